@@ -25,14 +25,12 @@ if TYPE_CHECKING:
     from symflex.model import ModelParameter
     from symflex.quantities import Quantity
 
-Stated = float | Fraction | str
-"""A number, or a text with or without a unit."""
+Stated = float | Fraction | str  # a number, or a text with or without a unit
 Ends = tuple[Stated, Stated]
 Places = Sequence[str | Path]
 T = TypeVar("T")
 
-FREQUENCIES: Final = 200
-"""Default number of frequencies of a swept response."""
+FREQUENCIES: Final = 200  # default number of frequencies of a swept response
 UNBOUNDED: Final = ("inf", "-inf", "+inf")
 
 

@@ -31,8 +31,7 @@ from symflex.algebra.ring import PolynomialMemo, terms_of
 Key = tuple[int, ...]
 
 
-Operation = tuple[int, int, Key, Key]
-"""Kind, step, operands, and the steps that nothing needs afterwards."""
+Operation = tuple[int, int, Key, Key]  # kind, step, operands, and the steps that nothing needs afterwards
 
 
 class Step(IntEnum):

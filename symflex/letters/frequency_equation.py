@@ -40,8 +40,7 @@ from symflex.roots import PoleZeroMap, Root
 from symflex.transfer import AnyBoundFunction, AnyTransferFunction
 from symflex.transfer.enclose import enclosure, later
 
-Key = tuple[int, ...]
-"""Powers of q and of every kernel."""
+Key = tuple[int, ...]  # powers of q and of every kernel
 MOST_RATIOS: Final = 3  # ratios of parameters that an equation may hold beside q
 BESIDE: Final = arb("1e-6")  # part of q by which the two sides of a root are apart from it
 Q: Final = "q"

@@ -53,8 +53,7 @@ from symflex.transfer.enclose import principal_values
 from symflex.transfer.of_model import derive_all
 from symflex.transfer.probes import probes_of
 
-Exponents = dict[str, Fraction]
-"""A product of powers of quantities."""
+Exponents = dict[str, Fraction]  # a product of powers of quantities
 
 ONE: Final = Fraction(1)
 BASE: Final = ("m", "kg", "N/m", "kg*m^2", "N*m", "H", "F")

@@ -67,14 +67,10 @@ FORMS: dict[str, Arrange] = {
     "frequency": _later("frequency"),
 }
 
-DECIMAL_FORMS = ("zpk",)
-"""Those that print decimals, of so many digits as they are told."""
-OF_SUMS = ("hyperbolic", "factored")
-"""Those that may have kernels of two lengths and of their sum."""
-AS_ARRANGED = ("zpk", "frequency")
-"""Those that are not functions of s, or print decimals anyway."""
-LARGE = 300
-"""Number of expanded terms from which only the closed form is tried: no expanded print is shorter."""
+DECIMAL_FORMS = ("zpk",)  # those that print decimals, of so many digits as they are told
+OF_SUMS = ("hyperbolic", "factored")  # those that may have kernels of two lengths and of their sum
+AS_ARRANGED = ("zpk", "frequency")  # those that are not functions of s, or print decimals anyway
+LARGE = 300  # number of expanded terms from which only the closed form is tried: no expanded print is shorter
 CANDIDATES = ("definitions", "factored", "polynomial")
 """The symbolic forms of rational functions; the shortest print is the default, ties go to the first."""
 DISTRIBUTED_CANDIDATES: dict[str, Begin] = {
@@ -86,20 +82,14 @@ DISTRIBUTED_CANDIDATES: dict[str, Begin] = {
 """The same for functions with kernels."""
 LONG = 200
 """Characters of a form from which sums of blocks are left as they are written, where that is much shorter."""
-SHORTER = 1.5
-"""How many times as long a form of one fraction has to be."""
-READABLE = 10**20
-"""A whole number beyond which a function without parameters is printed in decimals, as zpk."""
-CLOSED = 1.1
-"""How many times shorter a lumped form has to read with its definitions closed."""
+SHORTER = 1.5  # how many times as long a form of one fraction has to be
+READABLE = 10**20  # a whole number beyond which a function without parameters is printed in decimals, as zpk
+CLOSED = 1.1  # how many times shorter a lumped form has to read with its definitions closed
 LOOKED_UP = 1.2
 """How many times as long functions read that have to be looked up, ``K_1`` for ``sinh(q)/gamma``."""
-SHARED = 5
-"""Characters that a factor before a sum is worth which all its terms have."""
-FEW = 60
-"""Terms up to which every form is arranged: that takes some hundredths of a second."""
-ONE_LINE = 60
-"""Characters of a denominator beyond which functions that share it print it once."""
+SHARED = 5  # characters that a factor before a sum is worth which all its terms have
+FEW = 60  # terms up to which every form is arranged: that takes some hundredths of a second
+ONE_LINE = 60  # characters of a denominator beyond which functions that share it print it once
 MORE = 1.25
 """How many times the terms of the form with the fewest another one may have, and still print shorter."""
 

@@ -577,8 +577,7 @@ def _is_nested(term: Expression) -> bool:
 
 
 MOST_WAYS = 16  # ways to write factors by the law of a wavenumber that are made
-ARRANGED = 4
-"""The shortest of them: their sums are arranged, and what takes fewest characters is printed."""
+ARRANGED = 4  # the shortest of them: their sums are arranged, and what takes fewest characters is printed
 
 
 def _by_law(value: Factored, name: str, one: Factored) -> list[Factored]:

@@ -43,8 +43,7 @@ from symflex.transfer.enclose import principal_values
 POINTS: Final = 3
 EXPONENTS: Final = (1, 2, -1, -2)
 MOST: Final = 3  # names in one product
-SIMPLE: Final = 64
-"""The largest denominator of a number beside names, and the part of values between 1 and 2."""
+SIMPLE: Final = 64  # the largest denominator of a number beside names, and the part of values between 1 and 2
 
 
 def own_form(tf: TransferFunction) -> PrintedForm | None:

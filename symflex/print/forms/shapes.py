@@ -58,8 +58,7 @@ if TYPE_CHECKING:
 
 LARGEST: Final = 4000  # parts of a form up to which it is shaped: nobody reads longer ones
 FAR: Final = 1e60  # a frequency at which every sum has the sign of its highest power of s
-DIGITS: Final = 7
-"""Significant digits of a decimal that reads better than a shorter whole number elsewhere."""
+DIGITS: Final = 7  # significant digits of a decimal that reads better than a shorter whole number elsewhere
 MOST: Final = 15  # the same where whole numbers have as many
 FEW_DOUBLES: Final = 2
 """Numbers of more digits in a model that are printed with all of them, such as 1/60 as a double."""
