@@ -140,7 +140,7 @@ def _quotient(before: BoundTransferFunction, after: BoundTransferFunction) -> Ca
 
 def upper(value: arb) -> float:
     """Return a double that no number in a ball exceeds."""
-    found = nextafter(float(value.upper()), inf) if value != 0 else 0.0
+    found = 0.0 if value == 0 else nextafter(float(value.upper()), inf)  # nan is neither
     return inf if isnan(found) else found
 
 

@@ -14,11 +14,11 @@ end of its letter. Terms of the other sign take away what they are at most.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
-from math import prod
+from math import inf, prod
 
 from flint import acb, arb, fmpz_mpoly
 
@@ -29,24 +29,32 @@ from symflex.balls import at_centre, ball, precision
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, ModelError, UsageError, counted
 from symflex.letters.distance import BITS, UNCHANGED, alike, band_of, distance, percent, roots_of, upper
+from symflex.letters.nested import NestedForm, Parts
 from symflex.letters.order import truncated
 from symflex.model import spread_box
 from symflex.model.model import IMAGINARY
 from symflex.options import DeriveOptions, share_of
 from symflex.print.forms import PrintedForm, print_form
+from symflex.print.forms.arrange import length
 from symflex.print.forms.printed import Approximation, terms_of
+from symflex.print.forms.shapes import shaped
+from symflex.print.read_back import read_back
 from symflex.roots import PoleZeroMap
 from symflex.transfer import AnyTransferFunction, BoundTransferFunction, TransferFunction, bind
 from symflex.transfer.bind import values_for
+from symflex.transfer.bound import EnclosedTransferFunction
 from symflex.transfer.enclose import enclose, enclosure
+from symflex.transfer.lowest_terms import cancel
 
 Key = tuple[int, ...]
 Term = tuple[tuple[int, ...], int]
 Share = tuple[arb, int]
 Box = Mapping[str, tuple[Fraction, Fraction]]
-Image = tuple[fmpz_mpoly, Factored, int]
-"""A factor, the shorter one in its place, and its exponent."""
+Image = tuple[fmpz_mpoly, Factored, int]  # a factor, the shorter one in its place, and its exponent
+Way = tuple[TransferFunction, PrintedForm | None, Sequence[Image], tuple[float, float]]
+"""A short function, its print, and the changes of a coefficient at the values and over the box."""
 
+MOST_NESTED = 200_000  # terms, times terms of printed sums, that are compared over a box: in ten seconds
 MOST_TERMS = 20_000
 """Terms of a numerator or denominator up to which its coefficients are compared, in about ten seconds."""
 FACTORED_TERMS = 120  # terms of a shortened polynomial up to which it is tried whether it has factors now
@@ -123,6 +131,8 @@ class _Letters:
         gone, whole, worst = self.groups(before - after), self.groups(before), (0.0, 0.0)
         for key, terms in gone.items():
             spend()
+            if key not in whole:  # its terms had cancelled
+                return inf, inf
             total = sum(map(self.value, whole[key]), arb(0))
             each = abs(sum(map(self.value, terms), arb(0)) / total), _most(self.shares(whole[key], terms))
             worst = max(worst[0], upper(each[0])), max(worst[1], upper(each[1]))
@@ -165,7 +175,7 @@ class _Pruned:
 
     def letters_of(self, term: Term) -> tuple[int, ...]:
         """Return the exponents of letters and s in a term."""
-        return tuple(0 if i in self.inner else e for i, e in enumerate(term[0]))
+        return tuple(0 if i in self.inner else n for i, n in enumerate(term[0]))
 
 
 def _without(each: _Pruned, gone: Mapping[Key, Sequence[tuple[Share, Term]]]) -> fmpz_mpoly:
@@ -210,6 +220,54 @@ def _shorter(
     ratio = tf.ratio.map_factors(ring, shorter)
     short = replace(tf, reduced=ratio, closed=None, hidden=(), parts=parts, solve=None)
     return short, (max(x for x, _ in changes), max(x for _, x in changes)), dropped, images
+
+
+def _by_coefficients(
+    tf: TransferFunction, sums: Sequence[_Pruned], letters: _Letters, most: float
+) -> Iterator[Way]:
+    """Yield functions without monomials, one more coefficient kept whole each time."""
+    while True:
+        with precision(BITS):
+            short, changes, dropped, images = _shorter(tf, sums, letters, most)
+        if not dropped:
+            return
+        yield short, None, images, changes
+        _, owner, key = max(dropped, key=lambda each: each[0])
+        owner.whole.add(key)
+
+
+def _by_print(
+    tf: TransferFunction, form: PrintedForm, letters: _Letters, most: float, has_box: bool
+) -> Iterator[Way]:
+    """Yield prints without terms of sums, also those in lines below, one more term kept each time."""
+    values = {n: letters.values[i] for n, i in tf.ratio.ring.index.items() if i in letters.values}
+    nested = NestedForm(form, tf.ratio.ring, values)
+    is_large = has_box and len(nested.terms) * terms_of(tf.ratio) > MOST_NESTED
+    if not tf.is_rational or tf.model.root is not None or is_large:
+        return
+
+    def images(parts: Parts) -> list[Image]:
+        sides = zip(nested.sides(nested.parts), nested.sides(parts), (1, -1), strict=True)
+        over = ((x.numerator() * y.denominator(), y.numerator() * x.denominator(), n) for x, y, n in sides)
+        return [(old.expand(), new, n) for old, new, n in over]
+
+    def over_box(parts: Parts) -> float:
+        if not has_box or nested.constants(parts):  # of functions nothing is proved over a box
+            return inf if has_box else 0.0
+        return max(letters.change(x, y.expand())[1] for x, y, _ in images(parts))
+
+    with precision(BITS):
+        found = nested.without(most, over_box)
+    for parts, change in found[::-1]:
+        constants = nested.constants(parts)
+        num, den = nested.sides(parts, constants)
+        ratio, _ = cancel(num.numerator() * den.denominator(), num.denominator() * den.numerator())
+        short = replace(tf, reduced=ratio, closed=None, hidden=(), parts=None, solve=None)
+        short = replace(short, constants=(*tf.constants, *constants))
+        printed = shaped(tf.model, nested.shown(parts))
+        read_back(short, printed)
+        with precision(BITS):
+            yield short, printed, images(parts) if has_box else (), (change, max(change, over_box(parts)))
 
 
 def _over_box(
@@ -276,41 +334,60 @@ def shortened(
     opaque = frozenset() if is_plain else frozenset(tf.kernels.generators)
     with precision(BITS):
         letters = _Letters.of(tf, box)
-        factors = [(f, e) for f, e in tf.ratio.factors if len(f) > 1]
-        sums = [_Pruned(f, e, letters) for f, e in factors if not tf.ratio.ring.used_in([f]) & opaque]
-    kept, at_rest = -1, _at_rest(tf)
-    while True:
-        kept += 1
-        with precision(BITS):
-            short, changes, dropped, images = _shorter(tf, sums, letters, float(most))
-        if not dropped or _at_rest(short) == at_rest:
-            after = bind(short)
-            _, second = roots_of(own, after, first)
-            if not dropped or (after.symbolic is None and _counts(first, end) == _counts(second, end)):
+        factors = [(f, n) for f, n in tf.ratio.factors if len(f) > 1]
+        sums = [_Pruned(f, n, letters) for f, n in factors if not tf.ratio.ring.used_in([f]) & opaque]
+    exact, tried = print_form(tf, form), list[tuple[int, TransferFunction, PrintedForm, Way, PoleZeroMap]]()
+    whole: Way = tf, exact, (), (0.0, 0.0)
+    ways = [_by_coefficients(tf, sums, letters, float(most))]
+    ways += [_by_print(tf, exact, letters, float(most), bool(box))] if form is None else []
+    at_rest = _at_rest(tf)
+    for each in ways:
+        kept = -1
+        for kept, way in enumerate(each):
+            if _at_rest(way[0]) != at_rest:
+                continue
+            after = bind(way[0])
+            roots = roots_of(own, after, first)[1]
+            if after.symbolic is None and _counts(first, end) == _counts(roots, end):
+                tried.append((kept, way[0], way[1] or print_form(way[0], form), way, roots))
                 break
-        _, owner, key = max(dropped, key=lambda each: each[0])
-        owner.whole.add(key)
-    printed = print_form(short, form)
-    static = None
-    if own.is_rational:
-        quotient = replace(own, ratio=after.ratio / own.ratio).enclosed(BITS)
-        static = upper(abs(quotient(acb(0)) - 1))
-    terms = terms_of(short.ratio), terms_of(tf.ratio)
+        else:
+            tried.append((kept + 1, tf, exact, whole, first))
+    tried.append((0, tf, exact, whole, first))
+    kept, short, printed, (_, _, images, changes), roots = min(tried, key=lambda each: _length(each[2]))
+    terms, fewest = (terms_of(short.ratio), terms_of(tf.ratio)), min(terms_of(x.ratio) for _, x, *_ in tried)
     over = f", over the spread by {percent(changes[1])}" if box else ""
     said = [f"{terms[0]} of {terms[1]} terms; coefficients change by at most {percent(changes[0])}{over}"]
+    said += [f"with {fewest} terms the print would be longer"] if short is tf and fewest < terms[1] else []
+    static, after = None, bind(short)
+    if own.is_rational:
+        with precision(BITS):
+            unit = acb(ball(after.ratio.unit / own.ratio.unit))
+            static = upper(abs(unit * _first(after) / _first(own) - 1))
     said += [f"value for s -> 0: changed by {percent(static)}"] if static and static > UNCHANGED else []
-    whole = f"{counted(kept, 'coefficient')} kept whole, as a root would cross the imaginary axis or cancel"
-    said += [whole] if kept else []
+    part = f"{counted(kept, 'part')} kept whole, as a root would cross the imaginary axis or cancel"
+    said += [part] if kept else []
     coefficients = {"nominal": changes[0], "spread": changes[1] if box else None}
     facts = {"kind": "short", "bound": float(most), "terms": [*terms], "coefficients": coefficients}
-    apart = distance(own, after, (first, second)) if dropped else Approximation((), {})
+    apart = Approximation((), {}) if short is tf else distance(own, after, (first, roots))
     facts |= {"static": static, "kept_whole": kept} | apart.facts
     said += apart.said
-    if box and dropped:
-        kept_parts, where = _over_box(tf, box, images, band_of(own, first))
+    if box and short is not tf:
+        parts, where = _over_box(tf, box, images, band_of(own, first))
         said.append(f"magnitude over the spread {where}")
-        facts["within_1_db_over_spread_hz"] = [[*part] for part in kept_parts]
-    return short, replace(printed, approximation=Approximation(tuple(said), facts, not dropped))
+        facts["within_1_db_over_spread_hz"] = [[*part] for part in parts]
+    return short, replace(printed, approximation=Approximation(tuple(said), facts, short is tf))
+
+
+def _first(bound: BoundTransferFunction) -> acb:
+    """Return the coefficient of the leading term of a rational function at s = 0."""
+    made = bound.enclosed(BITS)
+    factors = made.factors if isinstance(made, EnclosedTransferFunction) else ()
+    return prod((next(c for c in f.coeffs() if not c.is_zero()) ** n for f, n in factors), start=acb(1))
+
+
+def _length(form: PrintedForm) -> int:
+    return length(form.num, form.den, *dict(form.where).values())
 
 
 def approximation(tf: AnyTransferFunction, given: DeriveOptions) -> tuple[TransferFunction, PrintedForm]:

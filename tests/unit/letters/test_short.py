@@ -18,14 +18,16 @@ from symflex.print.text import form_text
 HEAD = "symflex = 1\ninputs.u = {}\n"
 
 
-def function(output, **values):
+def function(output, definitions=(), **values):
     """Return the function of a formula; a pair is a value and its spread."""
     pairs = {n: v if isinstance(v, tuple) else (v, 0) for n, v in values.items()}
     entries = (
         f'parameters.{n} = {{ value = {v}, assume = "real"{f", spread = {s}" if s else ""} }}\n'
         for n, (v, s) in pairs.items()
     )
-    (tf,) = pipeline.derive_all(pipeline.loads(HEAD + "".join(entries) + f'outputs.y = "{output}"'))
+    lines = "".join(f'definitions.{n} = "{text}"\n' for n, text in dict(definitions).items())
+    text = HEAD + "".join(entries) + lines + f'outputs.y = "{output}"'
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
     return tf
 
 
@@ -33,6 +35,13 @@ def test_a_term_that_keeps_a_pole_in_the_left_half_plane_stays():
     # Routh 1877: s^3 + a s^2 + s + c is stable for a > c; 1.005 > 1.002 > 1
     form = shortened(function("u/(s^3 + (a + d)*s^2 + s + c)", a=1, d=0.005, c=1.002), Fraction(1, 100))[1]
     assert form.approximation.facts["terms"] == [5, 5]
+    assert form.approximation.facts["kept_whole"] == 1
+
+
+def test_a_term_of_a_definition_stays_that_keeps_a_pole_in_the_left_half_plane():
+    tf = function("u/(s^3 + A*s^2 + s + c)", {"A": "a + d"}, a=1, d=0.005, c=1.002)
+    form = shortened(tf, Fraction(1, 100))[1]
+    assert dict(form.where) or form.approximation.facts["terms"] == [5, 5]
     assert form.approximation.facts["kept_whole"] == 1
 
 
@@ -128,6 +137,57 @@ def test_no_statement_is_exceeded_at_random_points_of_the_box_and_of_the_band():
         s = 2j * np.pi * np.geomspace(low, high, 200)
         quotient = np.polyval(num_s, s) * np.polyval(den, s) / (np.polyval(num, s) * np.polyval(den_s, s))
         assert np.all(np.abs(20 * np.log10(np.abs(quotient))) <= 1 + 1e-9)
+
+
+NESTED = "u*(3*M*s^2 + 2*K)/((M*s^2 + B*s + K + g*cos(p))*(3*M*s^2 + 2*K) + 6*K*M*s^2)"
+LINES = {"M": "m + n", "K": "k*c/(k + c) + g", "B": "2*z*sqrt(K*M)"}
+OWN = {"m": 2.0, "n": 4e-3, "k": 1e3, "c": 9e5, "g": 0.5, "p": 0.1, "z": 0.02, "B": 1.0}
+
+
+@pytest.mark.parametrize(
+    ("lines", "spread", "letters"), [(LINES, 0, "kmz"), ({n: LINES[n] for n in "MK"}, 0.05, "Bkm")]
+)
+def test_definitions_lose_terms_and_no_statement_is_exceeded(lines, spread, letters):
+    random = Random(5)
+    values = {name: value for name, value in OWN.items() if name not in lines}
+    tf = function(NESTED, lines, **{name: (value, spread) for name, value in values.items()})
+    short, form = shortened(tf, Fraction(1, 100))
+    head, _, where = form_text(short, form).removeprefix("y/u = ").partition("\n  where ")
+    assert "".join(p.name for p in sorted(short.parameters, key=lambda p: p.name)) == letters
+
+    def polynomials(output, lines):
+        """Return numerator and denominator as functions of the values, by SymPy."""
+        function = sympy.sympify(output.removeprefix("u*").replace("^", "**"))
+        for _ in lines:
+            function = function.subs({n: sympy.sympify(text) for n, text in lines.items()})
+        sides = sympy.fraction(sympy.together(function))
+        s, names = sympy.Symbol("s"), [sympy.Symbol(name) for name in values]
+        return [sympy.lambdify(names, sympy.Poly(side, s).all_coeffs()) for side in sides]
+
+    def at(sides, point):
+        num, den = (np.array(side(*point.values()), dtype=float) for side in sides)
+        return num / den[-1], den / den[-1]
+
+    before = polynomials(NESTED, lines)
+    after = polynomials(head, dict([where.split(" = ")] if where else []))
+    facts, worst = form.approximation.facts, 0.0
+    bands = facts["within_1_db_over_spread_hz"] if spread else facts["within_1_db_hz"]
+    for _ in range(200 if spread else 1):
+        point = {name: value * (1 + spread * random.choice((-1, 1))) for name, value in values.items()}
+        one, other = at(before, point), at(after, point)
+        ratios = np.concatenate([y[x != 0] / x[x != 0] for x, y in zip(one, other, strict=True)])
+        worst = max(worst, ratios.max() / ratios.min() - 1)
+        for low, high in bands:
+            s = 2j * np.pi * np.geomspace(low, high, 200)
+            (n, d), (n_s, d_s) = ([np.polyval(x, s) for x in each] for each in (one, other))
+            assert np.all(abs(20 * np.log10(abs(n_s * d / (n * d_s)))) <= 1 + 1e-9)
+    bound = facts["coefficients"]["spread" if spread else "nominal"]
+    assert bound / 3 < worst <= (1 + bound) / (1 - bound) - 1 <= 0.0203
+    one, other = at(before, values), at(after, values)
+    assert abs(other[0][-1] / one[0][-1] - 1) <= facts["static"] * (1 + 1e-9)
+    for kind, x, y in (("zeros", one[0], other[0]), ("poles", one[1], other[1])):
+        gaps = [min(abs(np.roots(y) - root)) / abs(root) for root in np.roots(x)]
+        assert max(gaps) <= facts[kind]["displacement"] * (1 + 1e-9)
 
 
 @pytest.mark.parametrize(
