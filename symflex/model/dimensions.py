@@ -238,9 +238,11 @@ class DimensionSystem:
             return
         wanted = unit_of(unit)
         # N m/A is V s/rad: a gain per turn that is given as it stands is per radian wherever that fits.
-        is_gain = isinstance(expression, Name) and measure.cycles < 0 and wanted.dimension != SECOND
+        turns = [q.cycles for n in measure.cyclic if (q := self._quantities.get(n)) is not None]
+        is_gain = isinstance(expression, Name) and measure.cycles < 0 and max(turns, default=0) < 0
+        is_gain = is_gain and wanted.dimension != SECOND
         self._read_cycles(measure, bool(wanted.radians) or is_gain, expression.span, wanted.dimension)
-        if measure.open or not names(expression):
+        if measure.open or _is_constant(expression):
             return
         reduced = self._reduce(measure.times(Measure(wanted.dimension).power(-1)))
         if not self._learn(reduced) and not (reduced.written == TIMED and reduced.is_time):
@@ -257,7 +259,7 @@ class DimensionSystem:
         """Demand that a signal is measured as its expression is."""
         measure = self.measure(expression)
         self._read_cycles(measure, None, expression.span)
-        if measure.open or not names(expression):
+        if measure.open or _is_constant(expression):
             return
         left = self.variable(variable)
         if measure.is_gain:
@@ -270,7 +272,7 @@ class DimensionSystem:
 
     def place_field(self, unknowns: Sequence[str], ends: Sequence[Expression]) -> None:
         """Take x of a field to be measured as its ends are; a bare number may stand for any unit."""
-        measured = [e for e in ends if names(e) or isinstance(e, QuantityLiteral)]
+        measured = [e for e in ends if not _is_constant(e) or isinstance(e, QuantityLiteral)]
         axis = Measure(open=True)
         if measured:
             before = len(self.problems)
@@ -452,7 +454,7 @@ class DimensionSystem:
         axis, written = self._axes[name], names(place)
         if measure.open or axis.open or any(self._varies(n) for n in written):
             return
-        if not written and not measured(place):
+        if _is_constant(place) and not measured(place):
             return
         if any(isinstance(n, Name) and n.name == LAPLACE for n in written):
             return  # a point that depends on s is refused for that
@@ -505,9 +507,9 @@ class DimensionSystem:
             self._defined[name] = Measure(open=True)
             expression = self._definitions[name]
             measure = self.measure(expression)
-            has_unit = bool(names(expression)) or isinstance(expression, QuantityLiteral)
+            has_unit = not _is_constant(expression) or isinstance(expression, QuantityLiteral)
             if not has_unit and self._infers:
-                self._defined[name] = _bare(name)
+                self._defined[name] = replace(_bare(name), pis=measure.pis)
             elif has_unit and not measure.is_extreme:
                 self._defined[name] = measure
         return self._defined[name]
@@ -670,6 +672,12 @@ def misplaced(unit: str, given: Dimension, wanted: Dimension) -> str | None:
 def _bare(name: str) -> Measure:
     """Return the measure of a parameter without unit."""
     return Measure(unknowns=((Variable("parameter", name), Fraction(1)),), weight=1)
+
+
+def _is_constant(expression: Expression) -> bool:
+    """Tell whether an expression is a number, as ``2*pi*50`` and ``sqrt(2)`` are: it fits any port."""
+    written = names(expression)
+    return all(n.name in FUNCTIONS if isinstance(n, Call) else n == Name("pi") for n in written)
 
 
 def _said(term: Expression) -> str:

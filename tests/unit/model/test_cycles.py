@@ -190,3 +190,18 @@ x = "p*phi"
     model = symflex.loads(text)
     assert str(model.transfer_function("x", "T").form("polynomial")) == "x/T = p/(2*pi*s^2)"
     assert [(p.value, p.unit) for p in model.parameters] == [(ExactValue(Fraction(5, 1000)), "m/rev")]
+
+
+def test_a_frequency_in_a_definition_of_a_capacitance_is_told_as_at_the_port():
+    for C, sections in [("1/(f_c*R)", ""), ("C", 'definitions = { C = "1/(f_c*R)" }')]:
+        text = f"""symflex = 1
+parameters = {{ f_c = "50 Hz", R = "1 Ohm" }}
+{sections}
+inputs  = {{ V = {{ voltage = "a" }} }}
+outputs = {{ y = "b" }}
+elements.r = {{ type = "resistor", between = ["a", "b"], R = "R" }}
+elements.c = {{ type = "capacitor", between = ["b", "ground"], C = "{C}" }}
+"""
+        assert [message for *_, message in readings(symflex.loads(text))] == [
+            "'f_c', in 'Hz', is read in radians here: as 2*pi*f_c"
+        ], C

@@ -3,6 +3,9 @@
 What each model should give follows from counting kg, m and s by hand, as beside it.
 """
 
+import cmath
+import math
+
 import pytest
 
 import symflex
@@ -136,3 +139,21 @@ def test_a_number_does_not_hide_units_that_disagree():
 def test_a_bare_number_whose_places_ask_for_two_units_fits_any():
     text = controlled("K").replace('K = "2 V/m"', "K = 2")
     assert symflex.loads(text).transfer_function("Y", "u").bind()(2j) == pytest.approx(2 + 2 / 2j)
+
+
+def test_a_number_with_pi_or_a_root_fits_a_port_as_a_decimal_does():
+    delayed = 'symflex = 1\ninputs.u = {{}}\noutputs.Y = "D*u"\n{}blocks.D = {{ type = "{}", {} }}\n'
+    named = 'definitions.T = "{}"\n'
+    tuned = 'omega = "2*pi*50", zeta = 0.5'
+    w = 100 * math.pi
+    for text, expected in [
+        (delayed.format("", "delay", 'T = "pi/4"'), cmath.exp(-2j * math.pi / 4)),
+        (delayed.format(named.format("sqrt(2)"), "delay", 'T = "T"'), cmath.exp(-2j * math.sqrt(2))),
+        (delayed.format("", "low_pass", tuned), w**2 / (w**2 - 4 + 2j * w)),
+        (delayed.format(named.format("exp(1)"), "lag", 'T = "2*T"'), 1 / (1 + 4j * math.e)),
+        (body("x").replace('k = "k"', 'k = "sqrt(2)*10"'), 1 / (10 * math.sqrt(2) - 8)),
+        (controlled("pi/4"), 2 + math.pi / 4 / 2j),
+    ]:
+        (function,) = symflex.loads(text).transfer_functions()
+        assert function.bind()(2j) == pytest.approx(expected), text
+    assert codes(body("x").replace('k = "k"', 'k = "pi*c"')) == {"SF203"}
