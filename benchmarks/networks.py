@@ -1,6 +1,6 @@
 """Networks of masses, springs and dampers of any size, every m, k and b a symbol of its own.
 
-Models are made directly: what a specification in text may hold ends at some thousand masses.
+Models are made directly: what a specification in text may contain ends at some thousand masses.
 """
 
 from __future__ import annotations

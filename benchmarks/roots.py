@@ -200,7 +200,7 @@ def time_findroot(modes: int, digits: int, first: int = 1) -> float:
 
 
 def time_damped_box(digits: int) -> float:
-    """Return the seconds for the damped cantilever's poles in the box that holds 24."""
+    """Return the seconds for the damped cantilever's poles in the box that contains 24."""
     region = Rectangle(*(Fraction(side) for side in DAMPED_BOX))
     taken, poles = seconds(
         damped_cantilever(), lambda model: _poles("guess-and-prove", model, region, digits)

@@ -144,7 +144,7 @@ class Budget:
         if self.seconds is not None and now - self._start > self.seconds:
             raise BudgetError(TIME_OVER)
         if self.memory is not None and now >= self._look:
-            # The most it ever held is known at once; what it holds now has to be read from a file.
+            # The most it ever held is known at once; what it contains now has to be read from a file.
             if peak_memory() > self.memory and memory_held() > self.memory:
                 raise BudgetError(memory_used_up(self.memory))
             object.__setattr__(self, "_look", now + LOOK)

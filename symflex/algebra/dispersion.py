@@ -1,7 +1,7 @@
 """Dispersion relations, wavenumbers and the kernels made of them: what a transfer function has besides s.
 
 A distributed element's field equations ``z' = A(s) z`` have a characteristic polynomial in the spatial
-exponent lambda. Its roots are the wavenumbers; hyperbolic and circular functions of a wavenumber times a
+exponent lambda. Its roots are the wavenumbers; hyperbolic and trigonometric functions of a wavenumber times a
 length are the kernels. Both are generators of the ring, with exact definitions kept here.
 """
 

@@ -208,7 +208,7 @@ class Radicals:
         return any(int(degrees[i]) for i in self._rooted)
 
     def has_squares(self, polynomial: fmpz_mpoly) -> bool:
-        """Tell whether a nonzero polynomial holds squares of roots."""
+        """Tell whether a nonzero polynomial contains squares of roots."""
         degrees = polynomial.degrees()
         return any(int(degrees[i]) > 1 for i in self.radicands)
 

@@ -101,7 +101,7 @@ class SparsePolynomial:
         return self.parts == {(): 1}
 
     def is_constant(self) -> bool:
-        """Tell whether it holds no generator."""
+        """Tell whether it contains no generator."""
         return not any(self.parts)
 
     def term_content(self) -> SparsePolynomial:

@@ -224,7 +224,7 @@ class DiscPolynomial:
         if not radius > abs(middle) * WIDE:
             slopes: list[Number] = [self._derivative(k + 1)(u) * (k + 1) for k in range(terms)]
             return [self._derivative(k)(middle) + slope * (u - middle) for k, slope in enumerate(slopes)]
-        # Terms of an alternating series are larger than their sum: what a ball holds is told from its middle.
+        # Terms of an alternating series are larger than their sum: a ball is judged by its middle.
         far, count, known, moved = (abs(middle) + radius).abs_upper(), 0, list[Number](), arb(0)
         while True:
             known.append(self._derivative(count)(middle))

@@ -485,7 +485,7 @@ def roots_if_found(
 ) -> PoleZeroMap:
     """Return the poles and zeros, or as many as can be had: a response needs none.
 
-    The certificate says why where roots may be missing. Without a band all are sought, of a distributed
+    The certificate gives the reason if roots may be missing. Without a band all are sought, of a distributed
     system those of :func:`symflex.roots.default_region`. ``judged`` is another map of the same function.
     """
     region = None if bound.is_rational else band

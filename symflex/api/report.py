@@ -50,7 +50,7 @@ def write_report(
     Parameters
     ----------
     specs : str, Path, Model or a sequence of them
-        Specifications, or models; a folder means all in it and below, with its measured responses.
+        Specifications, or models; a folder means all in it and its subfolders, with measured responses.
         If no file has the name, the example of that name is taken, such as ``eppinger1988``.
     folder : str or Path
         Folder to write; files of the same name are replaced, others stay.

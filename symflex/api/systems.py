@@ -126,7 +126,7 @@ def from_matrices(
     UsageError
         SF902 for sizes that do not fit, numbers that are not finite or not real, and invalid names.
     SpecError
-        For entries that no expression may hold, with what they are.
+        For entries that no expression may contain, with what they are.
 
     Examples
     --------

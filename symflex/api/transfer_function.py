@@ -520,7 +520,7 @@ class BoundNestedTransferFunction(BoundNested, Toolboxes, Analyses):
 
     @cached_property
     def _expanded(self) -> transfer_room.BoundTransferFunction:
-        """Derived again with the numbers in place, so that its polynomials hold no name but s.
+        """Derived again with the numbers in place, so that its polynomials contain no name but s.
 
         SF235 for beams, rods and fields, whose expanded form would hold kernels.
         """

@@ -8,7 +8,7 @@ multiplied out they are the same: equal, proved.
 
 Generators are roots of s, of positive parameters, of primes and of sums of them, the imaginary unit, and
 ``exp``, ``cos`` and ``sin`` of lengths times wavenumbers. Real radicals of multiplicatively independent
-positive numbers are linearly independent (Mordell 1953), and exponentials and circular functions of
+positive numbers are linearly independent (Mordell 1953), and exponentials and trigonometric functions of
 independent arguments satisfy no relation but ``cos^2 + sin^2 = 1``; so every polynomial has one normal
 form, and equal functions are those whose difference has the normal form zero. (Where a root stands in a
 sum under another root, they may satisfy more relations: then equality is still proved by zero, and
@@ -243,7 +243,7 @@ class Arithmetic:
     def _parts(self, factor: fmpz_mpoly) -> tuple[int, list[tuple[Recipe, int]]] | None:
         """Return content and irreducible parts of a polynomial in s and the parameters.
 
-        One that also holds roots is one part; ``None`` for one that holds functions.
+        One that also contains roots is one part; ``None`` for one that contains functions.
         """
         plain = self._plain(factor)
         if plain is not None:
@@ -397,7 +397,7 @@ class Arithmetic:
                 expanded = expanded * Factored.polynomial(self.ring, factor) ** exponent
                 continue
             if parts is None:
-                raise UnreadError("the argument of a function has a denominator that holds functions")
+                raise UnreadError("the argument of a function has a denominator that contains functions")
             common = common * Fraction(parts[0]) ** exponent
             for recipe, times in parts[1]:
                 common = common * self._root_of_sum(recipe) ** (times * exponent * self.ground.order)
@@ -437,7 +437,7 @@ class Arithmetic:
     def _relations(self) -> tuple[tuple[int, int, Factored], ...]:
         """Position, power, and what the power is equal to."""
         g, index = self.ground, self.ring.index
-        # A sum may hold roots of earlier ones, and all hold roots of primes.
+        # A sum may contain roots of earlier ones, and all hold roots of primes.
         sums = reversed(list(enumerate(g.sums)))
         relations = [(index[f"sum({i})"], g.order, self.from_recipe(recipe)) for i, recipe in sums]
         relations += [(index[f"root({p})"], g.order, self.number(p)) for p in g.primes]
@@ -488,7 +488,7 @@ class Arithmetic:
         return candidate if self.equal(left, right * candidate) else None
 
     def depends_on_functions(self, value: Factored) -> bool:
-        """Tell whether exponentials or circular functions occur."""
+        """Tell whether exponentials or trigonometric functions occur."""
         first = self.ring.index.get("exp(0)", len(self.ring.names))
         return any(any(map(int, f.degrees()[first:])) for f, _ in value.factors)
 

@@ -78,7 +78,7 @@ class FormulaReading:
 
 
 def read(formula: Formula, tf: TransferFunction) -> FormulaReading:
-    """Return both functions over the smallest field that holds them.
+    """Return both functions over the smallest field that contains them.
 
     Raises UnreadError when one of them is in no field of this kind; SpecError: SF224 when the formula
     divides by zero; BudgetError: SF501 when an expansion would become too large.

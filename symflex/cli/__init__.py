@@ -189,7 +189,7 @@ def run(arguments: list[str] | None = None, *, is_program: bool = False) -> int:
         say(shown.getvalue(), nl=False, err=True)
         return problem.exit_code
     except OSError as problem:
-        return _unwritable(problem)  # of click's own texts, of help and version: commands say it themselves
+        return _unwritable(problem)  # of click's own texts, of help and version
     except SystemExit:
         if sys.stdout is printed_to:
             raise

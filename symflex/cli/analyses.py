@@ -150,7 +150,7 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
     --letters prints inequalities in the parameters that hold exactly where all poles, or with --of zeros all
     zeros of a transfer function, lie in the left half-plane; with two of --over, the boundary as a curve.
 
-    Exit code 4: something is not certified; the output says what. Undamped structures have poles all
+    Exit code 4: something is not certified, as the output lists. Undamped structures have poles all
     along the axis; these are counted up to a frequency, which is printed.
     """
     from symflex.cli.progress import ProgressBar

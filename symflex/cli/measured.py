@@ -147,8 +147,8 @@ def measure(spec: Specification, given: MeasureOptions) -> int:
     chooses one of several.
 
     If SPEC is a specification, band-limited noise drives the model, and a sensor adds noise to the response.
-    Overlapping records with a Hann window are averaged to an H1 estimate and its coherence. The file says
-    that its data are synthetic. The same seed gives the same file.
+    Overlapping records with a Hann window are averaged to an H1 estimate and its coherence. The file is
+    marked as synthetic. The same seed gives the same file.
     """
     from symflex.analysis.measured import measure as measured_of
     from symflex.data.measurement import WRITERS, measurement_bytes

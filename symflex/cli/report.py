@@ -21,7 +21,7 @@ EPOCH_VARIABLE = "SOURCE_DATE_EPOCH"
 def report(given: ReportOptions) -> int:
     """Write a report on models: equations, poles, zeros, figures, comparison, code.
 
-    A SPEC that is a folder stands for all specifications in it and below. Measured responses there (.csv,
+    A SPEC that is a folder stands for all in it and its subfolders. Measured responses there (.csv,
     .uff, .mat, .npz) are drawn with the transfer functions of the same name. DIR/index.html is one page with
     everything, which opens without a network. Next to it are report.tex, report.pdf and the folders figures,
     code and data. The report audits what a specification publishes, compares the models, and judges the
@@ -29,7 +29,7 @@ def report(given: ReportOptions) -> int:
     'symflex report eppinger1988' needs no file, and 'symflex examples' lists the names.
 
     All specifications are checked first: if one is invalid, the exit code is 3 and nothing is written. If a
-    model cannot be computed later, only its own chapter is missing, and the report says why.
+    model cannot be computed later, only its own chapter is missing, and the report gives the reason.
 
     With a fixed date, equal specifications give equal files. Exit code 4: something could not be certified,
     or a figure of [figures] could not be drawn. Exit code 5: a budget of time or memory was exceeded. In both

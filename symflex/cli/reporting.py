@@ -42,7 +42,7 @@ def reporting(command: Callable[P, int | None]) -> Callable[P, int]:
             silence(sys.stdout)
             return 0
         except OSError as error:
-            # Whatever reads or writes a file says so with its own code; this is all else a system can refuse.
+            # What reads or writes a file reports it with its own code; this is all else a system can refuse.
             place = f"'{error.filename}': " if error.filename else ""
             said = f"the system refused an operation: {place}{error.strerror or error}"
             show_error(UsageError(Diagnostic("SF905", said)))

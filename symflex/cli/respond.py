@@ -46,7 +46,7 @@ def respond(spec: Specification, given: RespondOptions) -> int:
 
     If no method certifies the response, as for undamped beams with controllers, the lowest 25 modes are
     summed (12 in a large network whose higher modes are small) and the contribution of the others is
-    estimated. The first line then says that the values are not certified.
+    estimated. The first line is then marked NOT CERTIFIED.
 
     Exit code 4: the response could not be found, or, with --strict, is not certified.
     """

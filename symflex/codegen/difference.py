@@ -161,7 +161,7 @@ class DifferenceEquation:
 def difference_equation(sampled: SampledTransferFunction, *, is_direct: bool = False) -> DifferenceEquation:
     """Return the sections of a sampled transfer function, their coefficients rounded once.
 
-    One section holds everything where ``is_direct``, or poles or zeros cannot be separated.
+    One section contains everything where ``is_direct``, or poles or zeros cannot be separated.
 
     Raises
     ------

@@ -140,7 +140,7 @@ class Contents:
 
 @dataclass(frozen=True, slots=True)
 class Outline:
-    """How a language spells what every file says."""
+    """How a language spells what every file contains."""
 
     room: int  # columns of text in a comment
     string: Callable[[str], str] = str  # a literal
@@ -160,7 +160,7 @@ class Outline:
     def heading(
         self, first: str, model: Model, paragraphs: Sequence[str], verified: Iterable[Verification] = ()
     ) -> list[str]:
-        """Return what a file says at its head: what it is, of which model, prose, accuracies."""
+        """Return the head of a file: what it is, of which model, prose, accuracies."""
         lines = [first, "", *map(self.disarmed, origin_lines(model, self.room))]
         said = (self.disarmed(inert(f"{v.name}: {v.text()}")) for v in verified)
         for i, paragraph in enumerate((*paragraphs, *said)):
@@ -250,7 +250,7 @@ class Language:
         ... symflex = 1
         ... parameters = {m = "2 kg", b = "3 N*s/m"}
         ... elements.body = {type = "mass", at = "x", m = "m"}
-        ... elements.loss = {type = "damper", between = ["x", "ground"], b = "b"}
+        ... elements.damping = {type = "damper", between = ["x", "ground"], b = "b"}
         ... inputs.F = {force = "x"}
         ... outputs.V = "s*x"
         ... ''')

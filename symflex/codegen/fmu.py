@@ -1,6 +1,6 @@
 """Functional mock-up units: difference equations as a co-simulation of FMI 3.0, with their sources.
 
-Input: a :class:`~symflex.codegen.sampled.StepFile`. Output: an :class:`Export` whose archive holds
+Input: a :class:`~symflex.codegen.sampled.StepFile`. Output: an :class:`Export` whose archive contains
 
     modelDescription.xml                 inputs and outputs with their units, the sample as the fixed step
     sources/fmu.c, buildDescription.xml  the step functions of the C export, and the functions of FMI

@@ -187,7 +187,7 @@ def _disarmed(text: str) -> str:
 
 
 def _docstring(lines: Sequence[str]) -> list[str]:
-    """Return lines, which hold no double quote, as a docstring."""
+    """Return lines, which contain no double quote, as a docstring."""
     escaped = (line.rstrip().replace("\\", "\\\\").replace("$", "\\$") for line in lines)
     return ['"""', *escaped, '"""']
 

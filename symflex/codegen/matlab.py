@@ -112,7 +112,7 @@ class MatlabPrinter(InfixPrinter):
 
 
 def continued(text: str, indent: str) -> list[str]:
-    """Return one statement, without strings that hold blanks, continued over lines where it is long."""
+    """Return one statement, without strings that contain blanks, continued over lines where it is long."""
     if len(indent) + len(text) <= WIDTH:
         return [indent + text]
     more = indent + "    "
@@ -209,7 +209,7 @@ def main_name(text: str) -> str:
 
 
 def _helped(first: str, lines: Sequence[str] = ()) -> list[str]:
-    """Return a help text: a first line, and others, which hold no line end, with a blank before them."""
+    """Return a help text: a first line, and others, which contain no line end, with a blank before them."""
     return [*wrapped(f"%{first}", WIDTH, "", "%   "), *(f"%   {line}".rstrip() for line in lines)]
 
 

@@ -42,7 +42,7 @@ METHODS = {
     "tustin": "by the bilinear transformation",
     "matched": "with poles and zeros matched",
 }
-"""What a file says of the method that it was sampled by."""
+"""How a file describes the method that it was sampled by."""
 
 
 @dataclass(frozen=True, eq=False)

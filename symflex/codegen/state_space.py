@@ -67,7 +67,7 @@ class StateEquations:
     ... symflex = 1
     ... parameters = {m = "2 kg", b = "3 N*s/m", k = "8 N/m"}
     ... elements.body = {type = "mass", at = "x", m = "m"}
-    ... elements.loss = {type = "damper", between = ["x", "ground"], b = "b"}
+    ... elements.damping = {type = "damper", between = ["x", "ground"], b = "b"}
     ... elements.wall = {type = "spring", between = ["x", "ground"], k = "k"}
     ... inputs.F = {force = "x"}
     ... outputs.X = "x"

@@ -6,7 +6,7 @@ Input: a network and the domains of its nodes. Output: placed parts, with the ax
                --b-- wall              what joins a node in the middle to the ground hangs below it
 
 Parts between neighbours stack in their gap; others bridge the columns between, above everything there. Every
-symbol has a place of its own by construction: gaps hold symbols, columns hold bodies, supports and vertical
+symbol has a place of its own by construction: gaps have symbols, columns have bodies, supports and vertical
 leads.
 """
 

@@ -488,7 +488,7 @@ def _solution(field: FieldProblem, evaluator: ExactEvaluator, demands: _Demands)
             )
         )
     if static := [u for u in field.unknowns if u not in system.states]:
-        message = f"the equations of field '{field.name}' hold no derivative of " + " and ".join(static)
+        message = f"the equations of field '{field.name}' contain no derivative of " + " and ".join(static)
         hint = "substitute what it equals in the other equations and conditions"
         raise ModelError(Diagnostic("SF305", message, field.span, hint))
     span, ends = field.equations[0].span or field.span, (field.start, field.end)

@@ -125,7 +125,7 @@ class _Piece(NamedTuple):
 
 
 class _TreeBuilder:
-    """The parser's callbacks, one for each rule of the grammar; they hold no state."""
+    """The parser's callbacks, one for each rule of the grammar; they contain no state."""
 
     def equation(self, left: _Piece, _equal: Token, right: _Piece) -> _Piece:
         span = left.reading.text.at(left.start, right.end)

@@ -184,7 +184,7 @@ def draw_response(response: SampledResponse, ax: AxesGiven | None = None) -> Fig
 
 
 def _magnitude_limits(drawn: Sequence[tuple[SampledResponse, PoleZeroMap]], axes: Axes) -> Limits:
-    """Return limits [dB] that hold every damped peak, undamped ones cut off, and what axes show already."""
+    """Return limits [dB] that show every damped peak, undamped ones cut off, and what axes show already."""
     before = axes.get_ylim() if axes.get_lines() else (inf, -inf)
     damped = [(response.magnitude_db[~_undamped(response, located)], response) for response, located in drawn]
     shown = [(level, response) for level, response in damped if level.size]

@@ -49,7 +49,7 @@ TICK: Final = 5  # percent of residual vibration that designers ask for
 
 
 def draw_responses(kind: str, bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
-    """Draw step or impulse responses in one figure, without the impulses they hold themselves.
+    """Draw step or impulse responses in one figure, without the impulses they contain themselves.
 
     See :func:`symflex.figures.draw`.
     """

@@ -102,8 +102,8 @@ def draw_locus(loop: AnyLoop, canvas: Canvas) -> Figure:
     poles at the first gain, dashed from where none is marked, such as infinity. Arrows
     point to growing gains, and where poles cross the imaginary axis the certified gain and frequency
     are noted. The curves that belong together are shown; the legend says how many of each lie
-    outside, and arrows at the border where. Grey circles surround points at which poles accumulate. Right of
-    the imaginary axis the ground is tinted. A verdict asked for says at each gain whether the loop is stable.
+    outside, and arrows at the border where. Grey circles surround points at which poles accumulate. The
+    right half-plane is tinted. A verdict asked for says at each gain whether the loop is stable.
     """
     locus = trace_locus(loop, canvas.gains, canvas.modes, band_hz=canvas.band_hz)
     require_arrival(locus)

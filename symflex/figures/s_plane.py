@@ -1,6 +1,6 @@
 """The part of the s plane that a figure shows, and notes at its border on the roots outside.
 
-Input: poles and zeros in double precision. Output: a :class:`View` that holds the resonances which belong
+Input: poles and zeros in double precision. Output: a :class:`View` that contains the resonances which belong
 together. A :class:`Panel` shows one, and takes rectangles for notes on the rest, in points from its lower
 left corner:
 
@@ -71,7 +71,7 @@ class RootMark:
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """A rectangle of the s plane [rad/s] that holds the origin, and what it shows."""
+    """A rectangle of the s plane [rad/s] that contains the origin, and what it shows."""
 
     # re and im: Limits.
     re: tuple[float, float]

@@ -1,7 +1,7 @@
 """The examples that come with symflex: the models of the folder ``derivations``.
 
 Input: the name of an example, ``eppinger1988`` or ``classics/quarter_car``, or the last part of one.
-Output: its path. An installed package holds the folder; in a clone it stands beside the package.
+Output: its path. An installed package contains the folder; in a clone it stands beside the package.
 
 Names are looked up in what the folder holds, and never joined to a path: ``../x`` is no example.
 """

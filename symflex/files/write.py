@@ -170,7 +170,7 @@ def free_name(stem: str, taken: Iterable[str], suffix: str = "") -> str:
 
 @contextmanager
 def _refusals(name: str, *, into: bool = False) -> Iterator[None]:
-    """Say what the system refuses as the program says it, SF903."""
+    """Report what the system refuses in the program's words, SF903."""
     try:
         yield
     except FileNotFoundError:

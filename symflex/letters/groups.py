@@ -224,7 +224,7 @@ def _invariants(tf: TransferFunction) -> tuple[list[Exponents], Exponents]:
 
 
 def _exponents(expression: Expression) -> Exponents | None:
-    """Return a product as powers of names, None where it holds a sum or another function."""
+    """Return a product as powers of names, None where it contains a sum or another function."""
     parts: list[tuple[Exponents, Fraction]] = []
     for base, n in powers_of(expression)[1].items():
         inside = _exponents(base.argument) if isinstance(base, e.Call) and base.name == "sqrt" else None

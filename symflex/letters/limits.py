@@ -231,7 +231,7 @@ class LimitFinder:
         if min((*rates.values(), *delays), default=1) <= 0 or min(sums, default=0) < 0:
             at_rest = "vanish at s = 0, as under tension or on a foundation"
             where = at_rest if self.end == ENDS[0] else "grow with s"
-            raise NotInLettersError(f"it holds waves whose wavenumbers do not {where}")
+            raise NotInLettersError(f"it contains waves whose wavenumbers do not {where}")
         return rates
 
     def _end(self, value: Factored, waves: Mapping[str, Fraction]) -> tuple[Factored, Fraction]:

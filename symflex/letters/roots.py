@@ -140,7 +140,7 @@ class LetterReader:
         return read(expression, lambda n: known[n] if n in known else acb(self.numbers[n]()))
 
     def said_of(self, kind: str, factor: fmpz_mpoly, roots: Sequence[Root]) -> FactorInLetters | None:
-        """Return what is said of a factor; None if it holds no letters, or none of its roots is listed."""
+        """Return what is said of a factor; None if it contains no letters, or none of its roots is listed."""
         c = self.tf.ring.coefficients(factor)
         degree = len(c) - 1
         if not degree or not self.tf.ring.used_in([factor]) - {LAPLACE} or len(factor) == 1:

@@ -136,7 +136,7 @@ def characteristic_loop(
 
 
 def gain_generators(tf: TransferFunction, gain: str) -> frozenset[str]:
-    """Return the generators that depend on a gain: itself, and functions of constants that hold it."""
+    """Return the generators that depend on a gain: itself, and functions of constants that contain it."""
     names = {gain, *(c.generator for c in tf.constants if names_among(c.expression, {gain}))}
     return frozenset(names & set(tf.ratio.ring.index))
 

@@ -94,7 +94,7 @@ class NetworkLoop:
 
     @property
     def radius(self) -> float:
-        """That of a disc [rad/s] that holds twice the requested modes, or all before roots accumulate."""
+        """That of a disc [rad/s] that contains twice the requested modes, or all before roots accumulate."""
         return DiscSearch(self.cramer, DIGITS, (False, False)).radius_of(4 * self.modes) / WIDER
 
     def in_disc(self, radius: float) -> LoopInDisc:

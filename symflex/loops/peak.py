@@ -193,7 +193,7 @@ def find_peak(bound: AnyBoundFunction, digits: int = 12, band: Ends | None = Non
     SF802 for a network that is not written out, ValueError for a band that is none; SF505, SF506.
     """
     if not bound.is_reduced or (bound.root is not None and bound.root.shift != 0):
-        message = "no peak is proved of networks that are not written out, nor beside a branch point but 0"
+        message = "no peak is certified for networks that are not written out, or with a branch point but 0"
         raise UncertifiedError(Diagnostic("SF802", message))
     ends, s = None if band is None else Band(*band_ends(band)), bound.ratio.ring.context.gen(0)
     asked = Peak(bound.name, bound.source.unit, digits, ends, arb(0), (arb(0),))
@@ -271,7 +271,7 @@ class _Pieces:
         self.bound, self.function, self.asked = bound, function, asked
         self.count, self.digits = 0, min(asked.digits, MOST_DIGITS)
         self.best, self.most = arb(0), arb(0)  # a magnitude that is reached; what bounds those far out
-        self.near: list[Piece] = []  # all that may hold the peak
+        self.near: list[Piece] = []  # all that may contain the peak
 
     def peak(self) -> Peak:
         """Return the peak."""

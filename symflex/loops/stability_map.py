@@ -204,7 +204,7 @@ class StabilityMap(Printed):
 
     @property
     def nominal_interval(self) -> GainInterval | None:
-        """The interval that holds the nominal gain."""
+        """The interval that contains the nominal gain."""
         if self.nominal is None:
             return None
         return next((i for i in self.intervals if i.holds(self.nominal)), None)

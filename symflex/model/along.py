@@ -14,7 +14,7 @@ __all__ = ["COORDINATE", "is_tapered", "varies_along_x"]
 
 
 def varies_along_x(expression: Expression) -> bool:
-    """Tell whether the coordinate stands in an expression that may hold it.
+    """Tell whether the coordinate stands in an expression that may contain it.
 
     >>> from symflex.expressions import Name, Product
     >>> varies_along_x(Product((Name("A_0"), Name("x")))), varies_along_x(Name("A_0"))

@@ -278,7 +278,7 @@ def _orders(equation: Equation, unknowns: Sequence[str]) -> dict[str, int]:
 
 
 def _can_be_solved(orders_of: Sequence[Mapping[str, int]], highest: Mapping[str, int]) -> bool:
-    """Tell whether every unknown's highest derivative can be given an equation of its own that holds it."""
+    """Tell whether every unknown's highest derivative can be given its own equation that contains it."""
     chosen: dict[int, str] = {}
 
     def place(unknown: str, tried: set[int]) -> bool:

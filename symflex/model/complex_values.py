@@ -99,7 +99,7 @@ class _ComplexNames:
     values: Mapping[str, Expression]
 
     def has_unit(self, expression: Expression) -> bool:
-        """Tell whether an expression holds j, or a name that does."""
+        """Tell whether an expression contains j, or a name that does."""
         return any(n == UNIT or (isinstance(n, Name) and n.name in self.values) for n in names(expression))
 
     def real(self, node: Expression) -> Expression:

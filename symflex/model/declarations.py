@@ -349,7 +349,7 @@ def _quantity(reader: Reader, entry: KeyValue, what: str, named: Collection[str]
 
 
 def _formula_hint(text: Text, named: Collection[str]) -> str | None:
-    """Return what a text lacks to be a formula of parameters, nothing where it holds no name."""
+    """Return what a text lacks to be a formula of parameters, nothing where it contains no name."""
     used = _formula_names(text) - {"pi", *FUNCTIONS}
     if unknown := sorted(used.difference(named)):
         return f"a formula may use only parameters, and '{unknown[0]}' is not one"

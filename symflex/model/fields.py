@@ -47,7 +47,7 @@ def read_fields(
 def with_brackets_opened(
     reader: Reader, fields: Sequence[FieldProblem], *, has_coordinate: bool
 ) -> tuple[FieldProblem, ...]:
-    """Return fields whose equations and conditions hold no brackets with primes.
+    """Return fields whose equations and conditions contain no brackets with primes.
 
     A field with a bracket that cannot be opened is left out.
     """

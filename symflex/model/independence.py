@@ -142,7 +142,7 @@ class RandomPoint:
 def repetitions(forms: Sequence[Form]) -> list[Repetition]:
     """Return every condition or equation that repeats or contradicts earlier ones.
 
-    One with a right side that holds more than inputs is passed over: nodes and signals may meet it.
+    One with a right side that contains more than inputs is passed over: nodes and signals may meet it.
     """
     repeated: list[Repetition] = []
     reduced: list[tuple[Place, Form, dict[int, int]]] = []

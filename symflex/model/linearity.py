@@ -32,7 +32,7 @@ from symflex.expressions import (
 from symflex.model.scope import IN_TIME, ModelScope, outside, without_point
 
 Degree = Literal["constant", "linear", "unknown"]
-"""What an expression is in what varies in time; ``unknown`` when it holds a name that means nothing."""
+"""What an expression is in what varies in time; ``unknown`` when it contains a name that means nothing."""
 
 EXPONENT_LIMIT = 64
 """As in the text of an expression, see :mod:`symflex.expressions.limits`."""

@@ -162,7 +162,7 @@ class FieldProblem:
     start: Expression
     end: Expression
     # One for each unknown, which stands as ``Name("w")`` or, differentiated k times along x, as
-    # ``Derivative("w", k)``; linear, with coefficients that may hold the coordinate, ``Name("x")``.
+    # ``Derivative("w", k)``; linear, with coefficients that may contain the coordinate, ``Name("x")``.
     equations: tuple[Equation, ...]
     # As many as the order in x; an unknown of any field stands as ``Call("w", point, order)``.
     conditions: tuple[Equation, ...]

@@ -9,7 +9,7 @@ Output: linear equations of the deviations from rest, which keep the names, and 
     i_0 = sqrt(m*g*x_0^2/C),  m*s^2*x - 2*C*i_0^2/x_0^3*x + 2*C*i_0/x_0^2*i = 0
 
 The equations have to hold at rest whatever their letters are: what is left over is evaluated in balls for
-random values, so that a number that is not zero is proved, and an identity missed with probability 0.
+random values, so a number that is not zero is noticed, and an identity missed with probability 0.
 """
 
 from __future__ import annotations

@@ -159,7 +159,7 @@ class Reader:
     def needed(
         self, table: TableValue, key: str, entry: KeyValue, message: str, hint: str | None = None
     ) -> KeyValue | None:
-        """Return what the table of an entry must hold; the message says that it does not."""
+        """Return what the table of an entry must hold; the message reports that it does not."""
         given = table.get(key)
         if given is None:
             self.note("SF214", message, entry.key_span, hint)

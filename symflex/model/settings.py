@@ -114,7 +114,7 @@ def spread_box(
 ) -> dict[str, tuple[Fraction, Fraction]]:
     """Return the ends of each parameter that has a ``spread``, or of all for a share of their values.
 
-    Values that hold pi are enclosed. Raises UsageError: SF804 for none, or for values of the wrong sign.
+    Values that contain pi are enclosed. Raises UsageError: SF804 for none, or for values of the wrong sign.
 
     >>> from symflex.model.model import ExactValue, ModelParameter
     >>> m = ModelParameter("m", ExactValue(Fraction(2)), spread=Fraction(1, 10))

@@ -75,7 +75,7 @@ MINUS: Final = re.compile(r"(?<![\w.])-(?=[\d.i])|(?<=\de)-(?=\d)")
 
 
 def passages_html(passages: Iterable[Passage]) -> str:
-    """Return what a command says as paragraphs and tables.
+    """Return the output of a command as paragraphs and tables.
 
     >>> from symflex.print.text import Passage
     >>> print(passages_html([Passage(["a <b>", "  of it"])]))

@@ -7,7 +7,7 @@ Output: nothing, or an error where the two differ.
     the function itself             1/cosh(s*l/c) there:                     0.89...   SF992
 
 A form is read twice: as the tree from which LaTeX, MathML and SymPy are made, and as its text, which is
-parsed as a user's would be. Names are what their lines say, in principal branches; functions of x are what
+parsed as a user's would be. Names are what their lines define, in principal branches; functions of x are what
 their differential equations say. Balls that do not meet prove that a form is wrong.
 """
 

@@ -69,7 +69,7 @@ def sympy_system(function: TransferFunction | BoundTransferFunction) -> SympyTra
     ... symflex = 1
     ... parameters = {m = "2 kg", b = "0.1 N*s/m"}
     ... elements.body = {type = "mass", at = "x", m = "m"}
-    ... elements.loss = {type = "damper", between = ["x", "ground"], b = "b"}
+    ... elements.damping = {type = "damper", between = ["x", "ground"], b = "b"}
     ... inputs.F = {force = "x"}
     ... outputs.V = "s*x"
     ... ''')

@@ -136,7 +136,7 @@ _Placed = TypeVar("_Placed", Constant, PlacedUnit)
 _Result = tuple[Constant, PlacedUnit]
 
 NOT_IN_PARAMETERS = f"a parameter is real; {IMAGINARY_UNIT}"
-_ONE_NUMBER: Final = "write the number before the unit; a unit holds no number except 1 in '1/s'"
+_ONE_NUMBER: Final = "write the number before the unit; a unit contains no number except 1 in '1/s'"
 _NO_GROUPS: Final = "digits are not grouped, as in '12000 m'"
 NEARER: Final = "choose a unit in which the number is closer to 1"
 # Stands at no place, so that a unit alone never seems to touch it.

@@ -61,7 +61,7 @@ _LONGEST_PIECE: Final = 16
 _SMALL: Final = 0.86
 _TALLEST_MM: Final = 190.0
 _POINTS_PER_MM: Final = 72 / 25.4
-# Mathematics is narrower than its source, which holds commands.
+# Mathematics is narrower than its source, which contains commands.
 _EM_PER_CHARACTER: Final = 0.34
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Chapter:
-    """What a report says about one model, and the files that go with it."""
+    """The chapter of one model in a report, and the files that go with it."""
 
     stem: str  # its anchor, and the name its files begin with
     section: Section  # title and sections

@@ -76,7 +76,7 @@ class Report:
 def find_specifications(
     paths: Sequence[Path], output: Path | None = None, allow_outside: Sequence[Path] = ()
 ) -> tuple[Path, ...]:
-    """Return the specifications that arguments name; a folder stands for the ``.toml`` files in it and below.
+    """Return the specifications that arguments name; a folder stands for all in it and its subfolders.
 
     Those of a folder come by name, before those of folders in it. What stands in ``output``, the folder that
     reports are written into, is left out. Raises UsageError: SF902 for a folder without any, for a link that
@@ -93,7 +93,7 @@ def find_specifications(
                     hint = "--allow-outside FOLDER lets a report read another folder"
                     raise UsageError(Diagnostic("SF902", message, None, hint))
             if not inside:
-                message = f"the folder '{path}' holds no specification"
+                message = f"the folder '{path}' contains no specification"
                 hint = "a specification is a file whose name ends in .toml"
                 raise UsageError(Diagnostic("SF902", message, None, hint))
             specifications += inside
@@ -330,7 +330,7 @@ def compose(chapters: Sequence[Chapter], date: str, publications: Sequence[Publi
 
 
 def _folded(section: Section) -> str:
-    """Return what a section holds, as a line that stands for it; empty where it holds little."""
+    """Return what a section holds, as a line that stands for it; empty where it contains little."""
     if section.anchor in TABLES:
         return TABLES[section.anchor]
     titles = [b.title for b in section.blocks if isinstance(b, Section) and b.title]

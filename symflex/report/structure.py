@@ -200,7 +200,7 @@ RESONANCES: Final = ("omega_p", "omega_z")
 def rigid_counts(model: Model) -> Mapping[tuple[str, str], RigidCounts]:
     """Return the zeros and poles of every transfer function as all compliances become rigid.
 
-    Springs, torsion springs, massless beams and resonance blocks are stiffened; blocks that hold another
+    Springs, torsion springs, massless beams and resonance blocks are stiffened; blocks that contain another
     model stay as they are. Distributed models have no such limit, nor have models without any compliance.
     Zeros are None where nothing moves, as of a structure that only springs hold to ground.
 

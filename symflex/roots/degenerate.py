@@ -7,7 +7,7 @@ such a point, so its factors do not say.
     a free beam on a foundation, k_f + rho A s^2 = 0: all wavenumbers vanish, and it turns without strain
 
 Both determinants are entire; values on a small circle give their Taylor coefficients ``c_k r^k``. If one of
-these is larger than all others together, the circle holds k roots (Rouche 1862).
+these is larger than all others together, the circle contains k roots (Rouche 1862).
 
     f = (s - 2)^2 (s - 5) about s = 2, r = 1e-38:  -3 r^2 is larger than r^3, and the disc contains two roots
 """

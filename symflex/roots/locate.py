@@ -226,7 +226,7 @@ def locate_distributed(
 
     For everything :func:`default_region` is searched. For a number of modes, the lowest poles and the lowest
     zeros; roots that mirror each other in the axes count as one mode. When the budget is exceeded, what was
-    certified so far is returned. Certified if every root in the region was counted, found, and told apart
+    certified so far is returned. Certified if every root in the region was counted, found, and separated
     from the others.
     """
     where, is_default = _region_of(bound, region)

@@ -268,7 +268,7 @@ class Certificate:
 
     @property
     def certified(self) -> bool:
-        """Whether every root counted was found, and told apart from the others."""
+        """Whether every root counted was found, and separated from the others."""
         return self.reason is None
 
     @property

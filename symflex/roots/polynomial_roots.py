@@ -16,7 +16,7 @@ from symflex.roots.polynomials.isolation import isolations
 from symflex.roots.problem import RootProblem, Splitting, SquareFreePart, split
 from symflex.roots.root import GUARD_BITS, Root, count_roots, root_at_zero
 
-DISTINCTION_ROUNDS = 5  # doublings of the digits until roots of different factors are told apart
+DISTINCTION_ROUNDS = 5  # doublings of the digits until roots of different factors are separated
 ROUNDING = 1e-12  # relative difference of two doubles below which their order is asked of the balls
 
 

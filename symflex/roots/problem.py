@@ -242,7 +242,7 @@ class _Ring:
 
     @classmethod
     def of(cls, problem: RootProblem) -> _Ring:
-        """Return a ring that holds every factor of the problem."""
+        """Return a ring that contains every factor of the problem."""
         by_name = {c.name: c for polynomial, _ in problem.factors for c in polynomial.constants}
         names = ["s", *(f"c{i}" for i in range(len(by_name)))]
         return cls(fmpz_mpoly_ctx.get(names, "lex"), tuple(by_name.values()))

@@ -185,7 +185,7 @@ def _shifted(root: Root, bound: BoundTransferFunction) -> Root:
 def _verdict(
     bound: BoundTransferFunction, apart: PoleZeroMap, digits: int
 ) -> tuple[StabilityVerdict, Sequence[Root]]:
-    """Return whether the model is stable, and the poles in the sector that holds all that may grow."""
+    """Return whether the model is stable, and the poles in the sector that contains all that may grow."""
     sides, reasons, is_singular = list[list[Root]](), list[str](), False
     parts = [Factored.number(bound.ratio.ring, 1) if bound.is_zero else bound.den, cancelled(bound)]
     for part, others in zip(parts, (apart.all_poles, [h.root for h in apart.hidden]), strict=True):

@@ -38,7 +38,7 @@ Row = dict[Key, "FieldElement"]
 """A sum of ``coefficient * s^power * column``, without coefficients that are zero."""
 
 DERIVATIVE = 4  # what a derivative adds to the weight of an unknown
-SIZE_LIMIT = 100_000  # terms that the coefficients of one row may hold together
+SIZE_LIMIT = 100_000  # terms that the coefficients of one row may contain together
 
 
 @dataclass(frozen=True, eq=False)

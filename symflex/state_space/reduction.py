@@ -85,7 +85,7 @@ def _observable(system: StateSpace, basis: Basis) -> StateSpace:
 
 
 def _closed(start: Sequence[Vector], rows: Sequence[Vector], system: StateSpace) -> Basis:
-    """Return the least space that holds the given vectors and that a matrix maps into itself."""
+    """Return the least space that contains the given vectors and that a matrix maps into itself."""
     at_points = (_at_random_point(start, rows, system, seed) for seed in (0, 1))
     points = [point for point in at_points if point is not None]
     dimension = max((len(space) for _, space in points), default=0)

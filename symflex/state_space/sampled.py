@@ -265,7 +265,7 @@ def _with_past_inputs(
 ) -> tuple[arb_mat, arb_mat, arb_mat, arb_mat]:
     """Return matrices with past inputs as states after the others, u[k - whole] to u[k - 1].
 
-    In a step ``older`` takes the first of these, ``newer`` the next; the output sees the first.
+    In a step ``older`` takes the first of these, ``newer`` the next; the output reads the first.
     """
     n, m, p = older.nrows(), older.ncols(), c.nrows()
     if not whole:

@@ -33,7 +33,7 @@ Point = tuple[ExactValue, ...]
 
 POINTS_LIMIT = 1_000_000  # points of one sweep
 DIGITS = 15
-"""Significant digits of values between limits: as many as a double tells apart, so that files contain all."""
+"""Significant digits of values between limits: as many as a double distinguishes, so files contain all."""
 WORKING_DIGITS = 40
 
 

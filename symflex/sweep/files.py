@@ -32,7 +32,7 @@ from symflex.sweep.points import MARGINS, VERDICTS
 from symflex.sweep.sweep import DRAW, FREQUENCY, MODE, SCHEMA, STABILITY, Labelled, Sweep
 
 NEW_YEAR = (1980, 1, 1, 0, 0, 0)  # the date of every file in an archive
-SIZE_LIMIT = 2**30  # bytes of a file that is read, and of what it holds
+SIZE_LIMIT = 2**30  # bytes of a file that is read, and of what it contains
 ARRAYS_LIMIT = 10_000
 HEADER = "header"
 CHARACTERS = "characters"
@@ -179,7 +179,7 @@ def sweep_bytes(sweep: Sweep, suffix: str) -> bytes:
 
 
 def read_sweep(path: str | Path) -> Sweep:
-    """Read a sweep that was written as netCDF or .npz; SF901 no such file, SF915 it holds no sweep."""
+    """Read a sweep that was written as netCDF or .npz; SF901 no such file, SF915 it contains no sweep."""
     file = Path(path)
     try:
         data = read_bytes(os.fspath(file), SIZE_LIMIT)
@@ -203,7 +203,7 @@ def read_sweep(path: str | Path) -> Sweep:
 def _no_sweep(path: str | Path, reason: str) -> DataError:
     said = "".join(c for c in reason if c.isprintable())[:100]
     hint = "it reads what 'symflex sweep -o' writes as .nc or .npz"
-    return DataError(Diagnostic("SF915", f"'{path}' holds no sweep: {said}", None, hint))
+    return DataError(Diagnostic("SF915", f"'{path}' contains no sweep: {said}", None, hint))
 
 
 def _from_npz(data: bytes) -> Sweep:
@@ -248,7 +248,7 @@ def _sweep(attributes: Mapping[str, str], arrays: list[Labelled], coordinates: s
     )
     arrays_by_name = {each.name: each for each in (*sweep.coordinates, *sweep.variables)}
     is_known = sweep.of in ARRAYS and "point_status" in arrays_by_name
-    require(is_known, f"it holds no {sweep.of[:40] or 'results'} with their status")
+    require(is_known, f"it contains no {sweep.of[:40] or 'results'} with their status")
     own, names = ARRAYS[sweep.of]
     points = arrays_by_name["point_status"].dims
     swept = sweep.attribute("parameters").split()

@@ -52,7 +52,7 @@ class ModelSolve:
 
     @property
     def is_lumped(self) -> bool:
-        """True where the equations hold nothing but polynomials in s."""
+        """True where the equations contain nothing but polynomials in s."""
         return self.plain is not None and self.plain.propagation is None
 
     @cached_property

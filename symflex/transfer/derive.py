@@ -312,7 +312,7 @@ class _CramerQuotients:
         return self._made(output, given, None, ratio, hidden_factors, table, parts, hides_waves=hides_waves)
 
     def _without_kernels(self, value: Factored) -> Factored:
-        """Return the factors that hold no kernel or wavenumber, over the ring without them."""
+        """Return the factors that contain no kernel or wavenumber, over the ring without them."""
         ring = self._opened.plain
         plain = value.filter(lambda f: not any(int(d) for d in f.degrees()[len(ring.names) :])) * value.unit
         return plain.over(ring)
@@ -338,7 +338,7 @@ def nested_transfer(block: PlacedBlock, ring: Ring) -> tuple[Factored, Factored]
     Raises ModelError: SF910 when the block stands for a distributed system.
     """
     if block.submodel is None or block.tf is None:
-        raise ValueError(f"block '{block.name}' holds no model")
+        raise ValueError(f"block '{block.name}' contains no model")
     tf = derive(assemble(block.submodel, nested_transfer), *block.tf)
     if not tf.is_rational or tf.model.root:
         message = (

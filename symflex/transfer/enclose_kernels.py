@@ -54,7 +54,7 @@ class KernelValues:
 
         Where the roots of a dispersion can be told apart, they stand for its fundamental functions. It is a
         point, a ball, or a series about either; wavenumbers take the same branch as ``near``, values at a
-        ball that holds ``s``. Their square roots are by default those of :func:`square_root`.
+        ball that contains ``s``. Their square roots are by default those of :func:`square_root`.
         """
         values: dict[str, Value] = {"s": s, **self._numbers}
         coefficients: dict[Dispersion, tuple[Value, ...]] = {}
@@ -310,7 +310,7 @@ def square_root(x: Value) -> Value:
         off = (1 - (1 - reach).sqrt()).upper()
         root = middle.sqrt() * acb(arb(1, off), arb(0, off))
     else:
-        root = NOWHERE  # of a ball that holds 0 no branch is analytic
+        root = NOWHERE  # of a ball that contains 0 no branch is analytic
     if isinstance(x, acb):
         return root
     coefficients = [root]
@@ -365,7 +365,7 @@ def _isolated(polynomial: acb_poly, slope: acb_poly) -> list[acb] | None:
         exact = [_refined(middle, own, disc) for disc in discs]
         gap = min((abs(a.mid() - b.mid()) for i, a in enumerate(discs) for b in discs[:i]), default=arb(1))
         if not all(root.rad() < gap / FINER for root in exact):
-            # Told apart, but too roughly for Newton's method.
+            # Separated, but too roughly for Newton's method.
             exact = [_refined(middle, own, disc) for disc in middle.roots(tol=gap.mid() / FINER)]
     except ValueError:
         return None

@@ -54,7 +54,7 @@ class Expansion:
         most = most or (TERM_LIMIT if propagation is None else KERNEL_TERMS)
         made = Expansion(equations.ring, Ring(plain), ring, radicals, most=most)
         if propagation is not None:
-            # Propagators hold no definitions, but definitions may hold delays.
+            # Propagators contain no definitions, but definitions may hold delays.
             inner = [made.generator(n) for n in propagation.kernel_ring.names]
             for p in propagation.propagators:
                 made.images[p.generator] = compose_rational(ring, p.image, inner)

@@ -83,7 +83,7 @@ class NestedTransferFunction:
 
     is_reduced: ClassVar[Literal[False]] = False
     hidden: ClassVar[tuple[HiddenFactor, ...]] = ()  # none was looked for
-    kernels: ClassVar[KernelTable] = NO_KERNELS  # it holds no wavenumbers
+    kernels: ClassVar[KernelTable] = NO_KERNELS  # it contains no wavenumbers
     is_nameless: ClassVar[bool] = False  # for the same reason
     output: Output  # what is measured
     input: Input  # what drives
@@ -218,7 +218,7 @@ class BoundNested:
     """A nested transfer function with numbers."""
 
     is_reduced: ClassVar[Literal[False]] = False
-    kernels: ClassVar[KernelTable] = NO_KERNELS  # it holds no wavenumbers
+    kernels: ClassVar[KernelTable] = NO_KERNELS  # it contains no wavenumbers
     source: NestedTransferFunction  # the symbolic function
     values: tuple[tuple[str, ExactValue], ...]  # every parameter's value, in declared order
     located: dict[object, Any] = field(default_factory=dict)  # poles and zeros that are known, by region
@@ -278,7 +278,7 @@ class BoundNested:
         """
         if self.is_zero:
             return 0j
-        # A wide ball may hold a zero divisor where the function has none: once more before a limit is sought.
+        # A wide ball may contain a zero divisor where the function has none, so retry before seeking a limit.
         value = double_value(self._known, s, 1, bits)
         if isfinite(value) or self.source.equations.propagation is None:
             return value

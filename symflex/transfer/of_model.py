@@ -181,7 +181,7 @@ def derive_as(
     ``expanded``: quotients of polynomials; ``nested``: straight-line programs; ``auto``: expanded, unless
     that would explode, and then a sentence says why it is not. With ``solves`` they are for code that solves
     networks of distributed members, and is shorter than that of a formula already for small ones. With
-    ``is_read`` they are for people, to whom a formula of pages says less than its steps.
+    ``is_read`` they are for people, to whom a formula of pages is less use than its steps.
     """
     if representation == "nested":
         return derive_nested(model, pairs), ""

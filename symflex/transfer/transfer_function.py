@@ -189,7 +189,7 @@ class TransferFunction:
 
     @cached_property
     def is_nameless(self) -> bool:
-        """True when it holds kernels of wavenumbers that have no formula."""
+        """True when it contains kernels of wavenumbers that have no formula."""
         return any(
             self.ratio.depends_on(k.generator) for k in self.kernels.kernels if k.function == "fundamental"
         )

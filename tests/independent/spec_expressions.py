@@ -44,7 +44,7 @@ def evaluate(text: str, values: Mapping[str, Number], where: Sequence[tuple[str,
     Raises
     ------
     ValueError
-        When the text holds anything else than arithmetic.
+        When the text contains anything else than arithmetic.
 
     Examples
     --------

@@ -105,7 +105,7 @@ MODELS = {
 
 
 def printed_value(tf, form, values, s):
-    """Return the value of a printed form whose functions of x are what its closed lines say."""
+    """Return the value of a printed form whose functions of x are those of its closed lines."""
     lines = {format_expression(left): e for left, e in form.closed} | dict(form.where)
     known = {"s": mpc(s), "pi": mp.pi, **values}
 

@@ -1,4 +1,4 @@
-"""Loops of every kind, and what every command says of them, against eigenvalues of polynomials by hand.
+"""Loops of every kind, and the verdict of every command on them, against eigenvalues of polynomials by hand.
 
 Each loop is written twice: as a specification, and as the denominator and numerator of its transfer function
 before anything cancels. numpy's roots of both tell how many poles lie in the right half-plane, how many of

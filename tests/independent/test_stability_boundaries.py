@@ -153,7 +153,7 @@ def test_counts_on_both_sides_of_every_boundary(model, chi, radius):
         above = poles_right_of_axis(lambda s, K=K: chi(s, K * (1 + NEAR)), radius)
         assert (below, above) == (intervals[i].poles.right, intervals[i + 1].poles.right)
         assert boundary.entering == above - below
-        # The pole that crosses is where the program says it is.
+        # The pole that crosses is where the program finds it.
         omega = 2 * math.pi * boundary.frequencies_hz[0]
         scale = max(abs(chi(1j * omega, K * 1.1)), abs(chi(1j * omega, K * 0.9)))
         assert abs(chi(1j * omega, K)) < 1e-7 * scale

@@ -36,7 +36,7 @@ from time import process_time
 ROOT = Path(__file__).resolve().parents[2]
 MODULES = ("symflex/transfer", "symflex/equations", "symflex/print/forms", "symflex/algebra/propagators.py")
 SPARED = {"direct_solve.py", "against_equations.py", "read_back.py", "probes.py", "__init__.py"}
-"""The checks themselves, and what holds no arithmetic."""
+"""The checks themselves, and what contains no arithmetic."""
 LONG = {"two_link_arm", "six_mass", "portal_frame", "fitted_resonances", "polynomial_resonance"}
 """Derivations that take two thirds of the time, and go the ways of others."""
 SEED = 37

@@ -462,7 +462,7 @@ SAID = ("re", "im", "multiplicity", "on_imaginary_axis", "is_real", "certified",
 
 @dataclass(frozen=True)
 class Answers:
-    """What the program says of a specification."""
+    """What the program prints for a specification."""
 
     values: tuple[complex, ...] = ()  # of all transfer functions at :data:`POINTS`
     said: Mapping[str, object] | None = (
@@ -473,7 +473,7 @@ class Answers:
 
 
 def answers(text: str, given: Mapping[str, str] | None = None, *, asks_roots: bool = True) -> Answers:
-    """Return what the program says; ``given`` are values of parameters that have none."""
+    """Return what the program prints; ``given`` are values of parameters that have none."""
     try:
         model = pipeline.loads(text)
     except SymflexError as error:

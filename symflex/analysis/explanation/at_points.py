@@ -35,7 +35,7 @@ class PointRatio:
     """What is known of ``num/(factor*determinants)``."""
 
     order: int | None  # it is this power of s, up to a constant and delays; ``None`` of anything else
-    is_delayed: bool  # it holds a delay
+    is_delayed: bool  # it contains a delay
     is_rational: bool  # no waves are in it
 
 

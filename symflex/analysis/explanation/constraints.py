@@ -134,7 +134,7 @@ class ReplacedCondition:
     """A field's condition that gives way to one that keeps an output at zero."""
 
     field: FieldProblem  # as it was
-    loaded: Equation  # its condition that holds the input
+    loaded: Equation  # its condition that contains the input
     measured: Call  # the value of the field that the output shows
     constraint: Constraint  # the model with the condition replaced
 
@@ -162,7 +162,7 @@ class ReplacedCondition:
 
 
 def replace_condition(model: Model, source: Input, output: Expression) -> ReplacedCondition | None:
-    """Return the model in which what an output shows is zero, instead of the condition that holds the input.
+    """Return the model in which an output is zero, instead of the condition that contains the input.
 
     ``None`` unless the input, a free signal, stands in one condition and nowhere else, and the output is a
     multiple of one value of a field.

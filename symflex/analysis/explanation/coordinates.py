@@ -258,7 +258,7 @@ def parted_at(model: Model, output: str) -> Model:
     component = next((c for c, called in components if quantity in called), None)
     if component is None or domain == "plane":
         return model
-    point = f"point of {owner}"  # no name holds blanks
+    point = f"point of {owner}"  # no name contains blanks
     node = NetworkNode(point, domain)
     length = dict(use.values)[element.length]
     left = Sum((length, Negative(call.argument)))

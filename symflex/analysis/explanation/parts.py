@@ -139,7 +139,7 @@ def separate(
 ) -> Separation:
     """Return the parts of a constrained system, those without poles left out.
 
-    Parts that hold the input ``source`` are marked; elements of ``model`` are named, by default all those of
+    Parts with the input ``source`` are marked; elements of ``model`` are named, by default all those of
     the equations. With ``varies``, which tells whether a determinant depends on s, determinants of parts with
     waves are not multiplied out.
     """

@@ -76,12 +76,12 @@ class ZeroExplanation(Printed):
     held, words, spec : str
         What is zero in the constrained system, in words, and the line that makes it of the specification.
     order : int
-        Power of s by which the output multiplies its coordinate: zeros at 0 that hold nothing.
+        Power of s by which the output multiplies its coordinate: zeros at 0 that contain nothing.
     filtered, extra, transmission : str
         Factors in s: of the output itself; whose roots are poles of the constrained system and no zeros;
         whose roots are zeros and no poles of it. Empty without such, ``...`` when too long to print.
     is_delayed : bool
-        The numerator holds exponentials of s besides, which have no zeros.
+        The numerator contains exponentials of s besides, which have no zeros.
     has_hidden : bool
         There are hidden modes: together with the zeros they are the poles of the constrained system, but
         cancel with poles of the system itself.

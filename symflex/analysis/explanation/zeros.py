@@ -204,7 +204,7 @@ def _kind(case: _Case, relation: Relation, separation: Separation, factor: Facto
 
 
 def _by_condition(case: _Case) -> ZeroExplanation | None:
-    """Let a field's condition that holds the input give way to one that keeps the output at zero."""
+    """Let a field's condition that contains the input give way to one that keeps the output at zero."""
     replaced = replace_condition(case.model, case.input, case.output.expression)
     if replaced is None:
         return None

@@ -216,7 +216,7 @@ class EnclosedModeShape:
     motions: tuple[Motion, ...]
     distributed: tuple[DistributedShape, ...]  # of every beam, rod, shaft, string and field
     reference: str  # what is 1: a node, or ``element(x)`` with the place; of a frame ``element.y(x)``
-    # The pole is certified, and the shape is the only one it has: then every ball holds the true amplitude.
+    # The pole is certified, and has only this shape: then every ball contains the true amplitude.
     certified: bool
 
     def __repr__(self) -> str:

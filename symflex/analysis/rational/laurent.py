@@ -365,7 +365,7 @@ def _of_series(series: LocalSeries, unit: arb, centre: acb, terms: int) -> list[
 
 
 def about_zero(ball: arb) -> arb:
-    """Return a ball that holds zero with its centre there, any other as it is.
+    """Return a ball that contains zero with its centre there, any other as it is.
 
     >>> about_zero(arb(0.5, 1)).mid(), about_zero(arb(2, 1)).mid()
     (0, 2.00000000000000)
@@ -490,7 +490,7 @@ def square_root(series: Value) -> Value:
     """Return a square root of a series that begins with an even power; not a number for any other.
 
     The branch is chosen by the leading coefficient's midpoint: a ball across a branch cut does no harm. A
-    ball that holds zero counts as zero before it.
+    ball that contains zero counts as zero before it.
 
     >>> root = square_root(acb_series([0, 0, -4, -8], 4))
     >>> [complex(c) for c in root.coeffs()]

@@ -77,7 +77,7 @@ class DelayedQuotient:
 
 
 def delayed_quotient(bound: BoundTransferFunction) -> DelayedQuotient | None:
-    """Return a function as a quotient of sums of delays; None if it holds anything else, or too much."""
+    """Return a function as a quotient of sums of delays; None if it contains anything else, or too much."""
     arguments = arguments_of(bound.kernels)
     if arguments is None:
         return None

@@ -124,7 +124,7 @@ class SizeOfExponentials:
 
         It is an integral over a ring about them, as a sum over its points: what is summed is analytic on the
         ring, so the error falls like a power of its width (Trefethen and Weideman 2014). First comes the
-        ring, with all ``poles`` that it holds besides; then the terms, and what they lack at most. That holds
+        ring, with all ``poles`` in it; then the terms, and what they lack at most. That holds
         if there is no pole on the ring itself, as there is none where all within its reach are given. Then
         no value on it is larger than those on its two edges.
         """

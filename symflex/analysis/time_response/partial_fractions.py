@@ -8,7 +8,7 @@ of matrices in balls; see :mod:`~symflex.analysis.time_response.sample_times`.
     in time             1/4     - (1/4) e^(-2t) - (1/2) t e^(-2t)
 
 The multiplicity of a certified pole is exact, so at the pole the first coefficients of the denominator's
-Taylor series are zero, whatever their balls hold, and a quotient of series is left. Poles close to each other
+Taylor series are zero, whatever their balls contain, and a quotient of series is left. Poles near each other
 have large coefficients of opposite sign; the digits that these lose are made up for by more digits of the
 poles.
 """
@@ -157,7 +157,7 @@ def at_infinity(quotient: EnclosedQuotient, integrations: int) -> tuple[tuple[ar
     """Return the polynomial part of a quotient over ``s^integrations``, and the coefficient of 1/s after it.
 
     In time these are the weights of an impulse and its derivatives, and the value just after t = 0. A leading
-    coefficient whose ball holds zero counts as what it is, unless it is exactly zero.
+    coefficient whose ball contains zero counts as what it is, unless it is exactly zero.
     """
     num, den = quotient.multiplied_out()
     surplus = int(num.degree()) - int(den.degree()) - integrations

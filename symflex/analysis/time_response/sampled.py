@@ -73,7 +73,7 @@ class Sampled:
     values: tuple[arb, ...]
     impulses: tuple[ImpulseAt, ...] = ()
     jumps: tuple[JumpAt, ...] = ()
-    at_jumps: frozenset[int] = frozenset()  # positions of values that hold both sides of a jump
+    at_jumps: frozenset[int] = frozenset()  # positions of values that contain both sides of a jump
     modes: PartialSum | None = None  # of which it is a sum, at any time
     method: str = ""  # what found it, such as ``echoes``; empty where there is nothing to find
     reason: str | None = None  # what is not proved
@@ -103,7 +103,7 @@ class Asked:
 
     @cached_property
     def quotient(self) -> DelayedQuotient | None:
-        """The function as a quotient of delays; None if it holds anything else."""
+        """The function as a quotient of delays; None if it contains anything else."""
         return None if self.bound.is_rational else delayed_quotient(self.bound)
 
 

@@ -4,7 +4,7 @@ Input: the exponentials that a step response is made of. Output: :class:`StepInf
 
 Over a whole interval of times the response lies in a ball, its value in the middle and its slope's ball times
 half the width; from some time on a sum of decaying exponentials bounds it. So an interval whose ball lies
-below the highest value found holds no peak, one whose ball leaves out a level no crossing of it, and what is
+below the highest value found contains no peak, one whose ball leaves out a level no crossing of it; what is
 found first, or last, is proved to be the first, or the last.
 
 With delays the response is made of pieces, each a sum of exponentials, until what residues of few poles leave
@@ -350,7 +350,7 @@ class NormalisedResponse:
     def peak(self) -> tuple[arb | None, arb] | None:
         """Return when the response is the highest and how high; no time where it exceeds 1 nowhere.
 
-        The result is None if it cannot be decided. Of all intervals that may hold the highest value the one
+        The result is None if it cannot be decided. Of all intervals that may have the highest value the one
         that may be the highest is halved, until all that are left are short.
         """
         close = CLOSE + 4 * float(self.pieces[-1].rest)

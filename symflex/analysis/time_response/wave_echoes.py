@@ -309,7 +309,7 @@ def _over(bound: BoundTransferFunction, value: Factored, power: int, x: Value) -
 
 
 def wave_quotient(bound: BoundTransferFunction) -> WaveQuotient | None:
-    """Return a function as waves with speeds, None if it holds anything else."""
+    """Return a function as waves with speeds, None if it contains anything else."""
     arguments = arguments_of(bound.kernels)
     if arguments is None:
         return None

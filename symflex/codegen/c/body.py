@@ -46,7 +46,7 @@ class Kind(Enum):
 
     @property
     def type(self) -> str:
-        """The C type of a variable that holds it; of an imaginary number it is the imaginary part."""
+        """The C type of a variable that contains it; of an imaginary number it is the imaginary part."""
         return "cx" if self is Kind.COMPLEX else "double"
 
 
@@ -279,7 +279,7 @@ def statement(opening: str, value: str, depth: int) -> list[str]:
 class Body:
     """The variables of one C function, the statements that make them, and expressions of them."""
 
-    # Identifiers of the variables that hold parameters, by the names in the model.
+    # Identifiers of the variables that contain parameters, by the names in the model.
     parameters: Mapping[str, str]
     s: Term  # what s is
     depth: int = 1  # how far statements are indented

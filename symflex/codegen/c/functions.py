@@ -38,7 +38,7 @@ class Functions:
 
     name: str  # identifier of the function of s, without what all names of the file begin with
     prefix: str  # what public names begin with
-    structure: str  # name of the type that holds the parameters
+    structure: str  # name of the type that contains the parameters
     members: Mapping[str, str]  # the structure's members by the parameters' names
     program: tree.Piecewise  # the function of s
     axis: tree.Piecewise | None = None  # the frequency response in real arithmetic, where it fits lanes

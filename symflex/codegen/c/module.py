@@ -202,7 +202,7 @@ class _Files:
 def helpers(code: str, parameters: str, order: int) -> str:
     """Return the functions that some code calls.
 
-    ``parameters`` is the name of the type that holds these, ``order`` the largest of a differential equation.
+    ``parameters`` is the name of their type, ``order`` the largest of a differential equation.
     """
     always, others = ["cx"], ""
     if re.search(r"\bLANES\b", code):

@@ -37,7 +37,7 @@ class CodeNode:
     """
 
     OPERANDS: ClassVar[tuple[str, ...]] = ()
-    """The fields that hold operands, or tuples of them: nodes, by their types."""
+    """The fields that contain operands, or tuples of them: nodes, by their types."""
 
     def __init_subclass__(cls) -> None:
         own = tuple(name for name, kind in cls.__annotations__.items() if "CodeNode" in kind)

@@ -2,7 +2,7 @@
 
 A sum of exponentials ``exp(Lambda x)`` solves the equation whose characteristic roots are all the Lambda.
 Completed by their images under the symmetries of the wavenumbers, its coefficients are polynomials in those
-of the dispersion relation; a combination of its solutions with the exact derivatives at x = 0 holds no terms
+of the dispersion relation; a combination of its solutions with the exact derivatives at x = 0 has no terms
 that cancel for small x.
 """
 

@@ -162,7 +162,7 @@ def origin(model: Model, indent: str) -> list[str]:
 
 
 def docstring(lines: Sequence[str], indent: str) -> str:
-    """Return lines, which hold no double quote, as a docstring, raw when a backslash is in them."""
+    """Return lines, which contain no double quote, as a docstring, raw when a backslash is in them."""
     text = "\n".join(line.rstrip() for line in lines)
     return f'{indent}{"r" if chr(92) in text else ""}"""{text.lstrip()}\n{indent}"""\n'
 

@@ -1,4 +1,4 @@
-"""A fit of resonances to measured responses, and everything a report says of it."""
+"""A fit of resonances to measured responses, and everything that is reported of it."""
 
 from __future__ import annotations
 

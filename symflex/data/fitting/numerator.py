@@ -3,7 +3,7 @@
 With poles known, ``H(s) prod(poles) = s^k (c_0 + c_1 s + ... + c_m s^m)`` is linear in the coefficients
 for each power of s and each number of zeros, which may be one more than there are poles: an inductor, and the
 voice coil of a loudspeaker, have that. All of them are solved, which costs no more than one
-factorisation of the widest, and told apart by the BIC. The sign of the gain is that of ``c_0``.
+factorisation of the widest, and compared by the BIC. The sign of the gain is that of ``c_0``.
 """
 
 from __future__ import annotations

@@ -28,7 +28,7 @@ Mask = npt.NDArray[np.bool_]
 MILLISECOND = 1e-3
 UNITS = {"omega_z": 1.0, "zeta_z": 1.0, "real_z": 1.0, "gain": 1.0, "lag": MILLISECOND, "delay": MILLISECOND}
 """Parameters that each response has of its own, and in which units a packed vector holds them."""
-LOGARITHMIC = ("omega_z", "real_z", "gain")  # those of which it holds the logarithm
+LOGARITHMIC = ("omega_z", "real_z", "gain")  # those of which it contains the logarithm
 NO_PEAK = 0.5**0.5  # damping ratio from which a pair of poles raises no magnitude
 
 

@@ -28,7 +28,7 @@ import numpy as np
 import numpy.typing as npt
 
 CUT = "it is cut short"
-SHOWN = 80  # characters of a message that repeats what a file says
+SHOWN = 80  # characters of a message that quotes a file
 LAST_CHARACTER: Final = 0x10FFFF
 SURROGATES: Final = (0xD800, 0xDFFF)
 """The range of Unicode, and the halves of pairs in it that are not characters (Unicode 15, section 3.9)."""
@@ -167,7 +167,7 @@ def read_array(name: str, content: bytes) -> Arrays:
         rows = np.frombuffer(reader.take(count * dtype.itemsize), dtype)
         return {field: rows[field] for field in dtype.names or ()}
     if description is None or order is None or shape is None:
-        raise ValueError("an array holds neither plain numbers nor text")
+        raise ValueError("an array contains neither plain numbers nor text")
     sizes = [int(size) for size in re.findall(r"\d+", shape[1])]
     reader.order = description[1] or "="
     try:

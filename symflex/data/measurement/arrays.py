@@ -141,7 +141,7 @@ def _json_variables(data: bytes) -> Arrays:
 def _json_array(value: object) -> Array:
     cells = [np.nan if x is None else x for x in value] if isinstance(value, list) else []
     if texts := [len(x) for x in cells if isinstance(x, str)]:  # each takes the room of the longest
-        require(len(cells) * max(texts) <= MAX_BYTES // 4, "it holds a list of long texts")
+        require(len(cells) * max(texts) <= MAX_BYTES // 4, "it contains a list of long texts")
         numbers = [number(x) if isinstance(x, str) else x for x in cells]
         cells = cells if None in numbers else numbers
     return np.array(cells if isinstance(value, list) else value)

@@ -402,7 +402,7 @@ def assembled(
         raise DataError(_missing(columns, file, header))
     settings = [c.numbers.real for c in columns if not c.meaning.kind]
     made = [sweep for m in made for sweep in _sweeps(m, settings, guesses)]
-    made = [m for m in made if np.any(m.values)] or made  # memories of analysers that hold nothing
+    made = [m for m in made if np.any(m.values)] or made  # memories of analysers that contain nothing
     if len(made) > MAX_RESPONSES:
         raise DataError(Diagnostic("SF607", f"'{file}' holds more than {MAX_RESPONSES} responses"))
     made = _made_over_input(made, guesses)
@@ -424,7 +424,7 @@ def assembled(
 def _sweeps(one: Assembled, settings: Sequence[Real], guesses: list[str]) -> list[Assembled]:
     """Return the sweeps of a response that goes through its band more than once.
 
-    Those of one direction and the same frequencies are averaged, unless another column holds a setting that
+    Those of one direction and the same frequencies are averaged, unless another column has a setting that
     changed; others are kept apart, since a response may depend on the direction.
     """
     lines, starts = one.frequency_hz, [0]
@@ -920,7 +920,7 @@ def _missing(columns: Sequence[DataColumn], file: str, header: Span | None) -> D
     unknown = next((c for c in columns if not c.meaning.kind and c.name), None)
     pairs = [("real", "imaginary"), ("magnitude", "phase")]
     missing = next((b if a in kinds else a for a, b in pairs if (a in kinds) != (b in kinds)), None)
-    message = f"{place}a column of {missing} is missing" if missing else f"{place}no columns hold the values"
+    message = f"{place}a column of {missing} is missing" if missing else f"{place}no columns have the values"
     if not (unknown and missing and header):
         return Diagnostic("SF602", message, header, ask(columns))
     hint = " ".join(filter(None, (nearest(unknown.name.lower(), KINDS), ask(columns))))

@@ -91,7 +91,7 @@ def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[Me
     if not blocks:
         are_alone = sum(number(line, table.decimal) is not None for line in table.lines) >= FEWEST_ROWS
         hint = f"{WITHOUT_AXIS}; {WITHOUT_TIME.format('y,dt=SECONDS')}" if are_alone else HINT
-        raise DataError(Diagnostic("SF605", f"'{name}' holds no rows of numbers", None, hint))
+        raise DataError(Diagnostic("SF605", f"'{name}' contains no rows of numbers", None, hint))
     if sum(len(block.rows) for block in blocks) > MAX_LINES:
         raise DataError(Diagnostic("SF607", f"'{name}' has more than {MAX_LINES} lines"))
     guesses = list(table.guesses)
@@ -358,7 +358,7 @@ def _columns(
 
 
 def _title(table: TextTable, above: Sequence[int]) -> ColumnMeaning | None:
-    """Return what a line above a table says it holds: ``Phase (deg)``, ``TRACE B: Magnitude [dB]``."""
+    """Return what a line above a table announces: ``Phase (deg)``, ``TRACE B: Magnitude [dB]``."""
     for i in reversed(above[-NEAR:]):
         meaning = meaning_of(table.lines[i].strip(SIGNS + '"'))
         if meaning.kind not in ("", "frequency") and len(meaning.label) < 30:  # noqa: PLR2004

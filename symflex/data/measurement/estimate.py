@@ -170,7 +170,7 @@ def responses_of(record: TimeRecord, how: Estimate) -> tuple[MeasuredResponse, .
             called = f"{name}/{source}"
         is_finite = np.isfinite(response) & (response != 0) & (frequency > 0)
         if is_finite.sum() < 3:  # noqa: PLR2004 (as every response)
-            message = f"the record of '{name[:40]}' makes no response: it holds too few frequencies"
+            message = f"the record of '{name[:40]}' makes no response: it contains too few frequencies"
             raise DataError(Diagnostic("SF605", message, None, "a sweep, a step or noise has them all"))
         shares = None if coherence is None else np.clip(np.asarray(coherence)[is_finite], 1e-6, 1.0)
         made.append(

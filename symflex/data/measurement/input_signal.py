@@ -101,7 +101,7 @@ def _signal(name: str, data: bytes) -> InputSignal:
     is_beside = first is None and all(_is_beside(table, i) for i in written)
     first = written[0] if is_beside and written else first
     if first is None:
-        raise DataError(Diagnostic("SF605", f"'{name}' holds no rows of numbers", None, HINT))
+        raise DataError(Diagnostic("SF605", f"'{name}' contains no rows of numbers", None, HINT))
     lines = [i for i in written if i >= first]
     if len(lines) > MAX_LINES:
         raise DataError(Diagnostic("SF607", f"'{name}' has more than {MAX_LINES} lines"))

@@ -31,7 +31,7 @@ class MeasuredResponse:
     Parameters
     ----------
     name : str
-        Its name in reports: ``OUT/IN`` if the file says so, else the file's stem.
+        Its name in reports: ``OUT/IN`` if the file has it, else the file's stem.
     frequency_hz : array of float, shape (n,)
         Positive and increasing [Hz].
     values : array of complex, shape (n,)
@@ -48,7 +48,7 @@ class MeasuredResponse:
     is_synthetic : bool
         True for computed data.
     notes : tuple of str
-        What the file says about itself.
+        How the file describes itself.
     guesses : tuple of str
         What was assumed when the file was read, because it does not say so.
     is_record : bool
@@ -288,7 +288,7 @@ def _ordered(
         wrong = ~np.isfinite(frequency[lines]) | ~np.isfinite(values[lines]) | (values[lines] == 0)
     if coherence is not None:
         wrong |= np.isnan(coherence[lines])
-    lines = without(wrong, "what holds no number, or zero")
+    lines = without(wrong, "what contains no number, or zero")
     if coherence is not None:
         lines = without(coherence[lines] > 1, "a coherence above 1")
     steps = np.diff(frequency[lines])

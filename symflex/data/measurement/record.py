@@ -1,6 +1,6 @@
 """Records in time, as data loggers, oscilloscopes and simulators save them: which column is what.
 
-Input: a file whose columns say time, ``time,u,y``, or one with a sampling time or rate above its columns.
+Input: a file with a column of time, ``time,u,y``, or one with a sampling time or rate above its columns.
 Output: a :class:`TimeRecord` with even samples, from which :mod:`symflex.data.measurement.estimate` makes
 frequency responses; ``None`` for a file of anything else::
 
@@ -127,7 +127,7 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
     table = TextTable.of(name, timed := _without_clock(data))
     first = next((i for i in range(min(SEARCHED, len(table.lines))) if _is_row(table, i)), None)
     if first is None and asked:
-        raise DataError(Diagnostic("SF605", f"'{name}' holds no rows of numbers", None, "one row a sample"))
+        raise DataError(Diagnostic("SF605", f"'{name}' has no rows of numbers", None, "one row per sample"))
     if first is None:
         return None
     width = len(cut(table.lines[first], table.delimiter))
@@ -160,7 +160,7 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
         channels = [(c, _resampled(times, x, step) if kept else x) for c, x in channels]
     else:
         assert step is not None
-        guesses.append(f"the samples are {step:.6g} s apart, as the file says")
+        guesses.append(f"the samples are {step:.6g} s apart, as the file states")
         channels = [(_plain(c, i), columns[i]) for i, c in enumerate(cells[:width])]
     return _sorted(channels, step, stem, name, guesses, "t,u,y" if names else f"u,y,dt={step:.6g}")
 
@@ -284,7 +284,7 @@ def _numbers(
         read = [[x if isinstance(x, float) else np.nan for x in row] for row in read]
     if wrong.any():
         listed = ", ".join(str(lines[i] + 1) for i in np.flatnonzero(wrong)[:6].tolist())
-        guesses.append(f"left out what holds no number: line {listed}")
+        guesses.append(f"left out what contains no number: line {listed}")
     good = [row for row, is_wrong in zip(read, wrong.tolist(), strict=True) if not is_wrong]
     return list(np.array(good, float).T), [i for i, w in zip(lines, wrong.tolist(), strict=True) if not w]
 

@@ -84,7 +84,7 @@ def decoded(name: str, data: bytes) -> tuple[str, tuple[str, ...]]:
         guesses = (f"the file is not UTF-8 and is read as {encoding}",)
     text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n").rstrip("\x1a\n")
     if match := _CONTROL.search(text):
-        message = f"'{name}' is not text: it holds the control character 0x{ord(match[0]):02x}"
+        message = f"'{name}' is not text: it contains the control character 0x{ord(match[0]):02x}"
         raise DataError(Diagnostic("SF601", message, None, "binary formats end in .npz, .npy, .mat, .uff"))
     return text + "\n", guesses
 

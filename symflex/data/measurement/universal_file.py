@@ -72,8 +72,8 @@ def read_universal_file(name: str, data: bytes, stem: str, asked: str = "") -> t
     places, kinds = _datasets(name, data)
     if not places:
         held = ", ".join(f"{k} ({DATASETS.get(k, 'not read')})" for k in sorted(set(kinds))[:8])
-        message = f"'{name}' holds no dataset 58 (function at nodal degree of freedom)"
-        message += f"; it holds datasets {held}" if held else ""
+        message = f"'{name}' contains no dataset 58 (function at nodal degree of freedom)"
+        message += f"; it contains datasets {held}" if held else ""
         hint = "a line with -1 in columns 5 and 6 begins and ends each dataset"
         raise DataError(Diagnostic("SF601", message, None, hint))
     if len(places) > MAX_RESPONSES:
@@ -106,7 +106,7 @@ def read_universal_file(name: str, data: bytes, stem: str, asked: str = "") -> t
     if not responses:
         types = sorted({int(entry.get("func_type", 0)) for entry in sets})
         held = ", ".join(f"{t} ({FUNCTIONS.get(t, 'not read')})" for t in types[:8])
-        message = f"'{name}' holds no frequency response: its datasets 58 are of the function types {held}"
+        message = f"'{name}' contains no frequency response: its datasets 58 are of the function types {held}"
         raise DataError(Diagnostic("SF602", message, None, "function type 4 is a frequency response"))
     return tuple(responses)
 
@@ -147,7 +147,7 @@ def _check_header(name: str, line: int, block: Sequence[bytes]) -> None:
         kind, size = int(words[0]), int(words[1])
         numbers = [float(word) for word in words[3:5]]
     except (ValueError, IndexError):
-        message = f"{name}:{line + 7}:1: record 7 of this dataset 58 holds no numbers"
+        message = f"{name}:{line + 7}:1: record 7 of this dataset 58 contains no numbers"
         raise DataError(Diagnostic("SF601", message)) from None
     if kind not in ORDINATE_TYPES or not 0 < size <= MAX_LINES or not np.isfinite(numbers).all():
         message = f"{name}:{line + 7}:1: ordinate type {kind} with {size} values"

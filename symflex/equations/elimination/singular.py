@@ -295,9 +295,9 @@ def _zero_ends(equations: Equations, through: nmod_mat) -> Iterator[Diagnostic]:
 def _idle_elements(equations: Equations, driven: nmod_mat, felt: nmod_mat) -> Iterator[Diagnostic]:
     """Yield the branches and masses that no input strains, and those no output would feel.
 
-    A branch changes the transfer functions by a product: what the inputs put across it times what the outputs
-    see of a force through it (Sherman and Morrison 1950). Where one of the two is zero, the branch is idle.
-    An expression that reads the branch's own force sees the branch however little that force moves.
+    A branch changes the transfer functions by a product: what the inputs put across it times the response of
+    the outputs to a force through it (Sherman and Morrison 1950). If one of them is zero, the branch is idle.
+    An expression that reads the branch's own force depends on it however little that force moves.
     """
     model = equations.model
     read = {n.owner for _, e in model.expressions() for n in names(e) if isinstance(n, Attribute)}
@@ -317,7 +317,7 @@ def _idle_elements(equations: Equations, driven: nmod_mat, felt: nmod_mat) -> It
         elif use.name not in read and not any(
             int(felt[balance[v], i]) for v in ends for i in range(len(model.outputs))
         ):
-            idle.setdefault("no output sees", []).append(use)
+            idle.setdefault("no output depends on", []).append(use)
     for why, uses in idle.items():
         who = [f"{use.element.type_name} '{use.name}'" for use in uses]
         change, them = ("changes", "it") if len(uses) == 1 else ("change", "them")

@@ -211,7 +211,7 @@ class _Network:
         self.classes[:] = [kind if kind < 0 else part(c) for c, kind in enumerate(self.classes)]
 
     def _is_ratio(self, row: _NetworkRow) -> bool:
-        """Tell whether a row holds two nodes, and not their difference."""
+        """Tell whether a row contains two nodes, and not their difference."""
         match [*row.entries.values()]:
             case [one, other] if row.implicit < 0:
                 return bool(self.bench.add([*one, *other]))
@@ -287,7 +287,7 @@ class _StarMesh:
         size = len(network.classes)
         self.users: list[dict[int, None]] = [{} for _ in range(size)]
         self.hidden: list[int] = [0] * size
-        """Per column, how many rows hold it implicitly."""
+        """Per column, how many rows contain it implicitly."""
         self.handed: dict[int, dict[int, None]] = {}
         """Per column, the rows other than its own that do."""
         self.solved: list[_SolvedUnknown] = []
@@ -479,7 +479,7 @@ class _StarMesh:
         return row
 
     def _holders(self, column: int) -> list[int]:
-        """Return the rows that hold a column implicitly: its own, or one it was handed to."""
+        """Return the rows that contain a column implicitly: its own, or one it was handed to."""
         rows = self.rows
         candidates = (column, *self.handed.get(column, ()))
         return [

@@ -328,7 +328,7 @@ class KeyValue:
 
     key: str  # the decoded key, one part of a dotted one
     key_span: Span  # that part as it was written, with its quotes if it has any
-    value: Value  # what it holds
+    value: Value  # what it contains
 
 
 @dataclass(frozen=True, slots=True)

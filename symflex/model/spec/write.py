@@ -82,7 +82,7 @@ def _value(value: object, path: tuple[str, ...], depth: int = 0) -> str:
             return "true" if value else "false"
         case str():
             if _SURROGATE.search(value):
-                raise _refused("SF104", path, "the text holds half a surrogate pair", "leave it out")
+                raise _refused("SF104", path, "the text contains half a surrogate pair", "leave it out")
             return _string(value)
         case int() | Fraction():
             return _rational(Fraction(value), path)

@@ -270,7 +270,7 @@ class Arranger:
         return product_of([self._group({(0, *m[1:]): c for m, c in terms.items()}), self._powers(0, degree)])
 
     def _by_s(self, terms: dict[tuple[int, ...], int]) -> Iterable[dict[tuple[int, ...], int]]:
-        """Return terms by powers of s; what holds no s, or a function or a closed sum, stands alone."""
+        """Return terms by powers of s; what contains no s, or a function or a closed sum, stands alone."""
         by_power: dict[object, dict[tuple[int, ...], int]] = {}
         for m, c in terms.items():
             is_plain = m[0] and not any(

@@ -103,7 +103,7 @@ def _collected(part: Expression, arranger: Arranger) -> Expression:
 
 
 def _nests_s(term: Expression) -> bool:
-    """Tell whether a term is a product with a sum that holds another one with s."""
+    """Tell whether a term is a product with a sum that contains another one with s."""
     sums = [f for f in term.factors if isinstance(f, Sum)] if isinstance(term, Product) else []
     return any(isinstance(n, Sum) and n not in sums and S in names(n) for f in sums for n in nodes(f))
 

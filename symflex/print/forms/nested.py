@@ -71,7 +71,7 @@ def nested_form(tf: NestedTransferFunction) -> PrintedForm:
     ... elements.first = {type = "mass", at = "x_1", m = "m_1"}
     ... elements.second = {type = "mass", at = "x_2", m = "m_2"}
     ... elements.spring = {type = "spring", between = ["x_1", "x_2"], k = "k"}
-    ... elements.loss = {type = "damper", between = ["x_1", "x_2"], b = "b"}
+    ... elements.damping = {type = "damper", between = ["x_1", "x_2"], b = "b"}
     ... inputs.F = {force = "x_1"}
     ... outputs.X = "x_1"
     ... ''')

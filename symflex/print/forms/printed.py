@@ -174,7 +174,7 @@ def require(tf: TransferFunction, form: str) -> None:
     Raises UsageError: SF902.
     """
     if form in ("zpk", "frequency") and tf.model.root is not None:
-        reason = "it holds roots of s"
+        reason = "it contains roots of s"
     elif form in KERNELS_ONLY and tf.is_rational:
         reason = "it is a rational function of s"
     elif form in RATIONAL_ONLY and not tf.is_rational:

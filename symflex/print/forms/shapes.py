@@ -163,7 +163,7 @@ class _Signs:
         return _Signs(values, {_texts(n.terms): n for n in sums}, sorted(typed, key=len))
 
     def with_decays(self, where: Sequence[tuple[str, Expression]]) -> _Signs:
-        """Return these with what where lines say decays, as ``exp(-gamma*l)``: it is zero far away."""
+        """Return these with what decays by the where lines, as ``exp(-gamma*l)``: it is zero far away."""
         values = dict(self.known)
         for name, line in reversed(where):
             if {n.name for n in names(line)} <= {*values, *FUNCTIONS}:

@@ -65,7 +65,7 @@ def written_form(tf: TransferFunction) -> PrintedForm | None:
 
 
 def _opened(placed: PlacedBlock) -> Expression:
-    """Return a block's transfer function in its values, which may hold earlier blocks."""
+    """Return a block's transfer function in its values, which may contain earlier blocks."""
     values = dict(placed.values)
     assert placed.block is not None
     if placed.block.kernel_time:

@@ -1,7 +1,7 @@
 """The sections of a model's chapter. A new one is a function here and a line in :data:`SECTIONS`.
 
 It returns None where a model gives no cause for it, and raises SymflexError when what it needs cannot be
-computed; the report says so in its place.
+computed; the report gives the reason in its place.
 """
 
 from collections.abc import Callable

@@ -87,7 +87,7 @@ class Entire(Followed, Protocol):
         """Return balls around value and derivative of every factor on a ball ``s``."""
 
     def enclosed_about(self, ball: acb, centre: acb, bits: int) -> list[FactorBall]:
-        """Return balls around values at an exact point, and around derivatives on a ball that holds it."""
+        """Return balls around values at an exact point, and around derivatives on a ball that contains it."""
 
     def is_analytic_on(self, disc: acb, bits: int) -> bool:
         """Tell whether the function has no pole on a ball."""

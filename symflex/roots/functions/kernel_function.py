@@ -1,4 +1,4 @@
-"""The part of a numerator or denominator that holds kernels, as a function of s.
+"""The part of a numerator or denominator that contains kernels, as a function of s.
 
 Input: a bound transfer function and a product of factors over its ring.
 Output: a :class:`KernelFunction`, evaluated with its logarithmic derivative at any precision.
@@ -212,7 +212,7 @@ class KernelFunction:
             return all(at_centre(evaluator.value(value, values)).is_finite() for value in laws)
 
     def turn_of_exponentials(self, ball: acb, start: acb, end: acb, bits: int) -> tuple[float, arb] | None:
-        """Return how far arg F, of :attr:`power`, turns between two points of a ball that holds the path.
+        """Return how far arg F, of :attr:`power`, turns between two points of a ball that contains the path.
 
         First comes a measure of how far F may turn anywhere on the ball, infinite where nothing is proved,
         then the turn. ``None`` when the function is not a sum of exponentials.

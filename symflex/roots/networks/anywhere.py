@@ -1,6 +1,6 @@
 """Poles and zeros of networks that lose energy, are driven by themselves, or are read elsewhere than driven.
 
-All roots in a disc about 0 that holds what is asked for, from :mod:`symflex.roots.networks.disc_search`. What
+All roots in a disc about 0 with those requested, from :mod:`symflex.roots.networks.disc_search`. What
 numerator and denominator share, to twice the digits, is hidden.
 """
 

@@ -1,7 +1,7 @@
 """How many frequencies an undamped network has below a given one, proved (Wittrick & Williams 1971).
 
 The number is that of the members' own frequencies, held at their ends, and of negative pivots of the
-network's dynamic stiffness, less a constant. Bordered by a row that holds what the input drives, the same
+network's dynamic stiffness, less a constant. Bordered by a row that contains what the input drives, the same
 counts the zeros of that input's own motion.
 """
 
@@ -36,7 +36,7 @@ class Counter:
     """Samples a network."""
 
     network: Network
-    borders: tuple[Mapping[int, Factored], ...]  # rows that hold a motion
+    borders: tuple[Mapping[int, Factored], ...]  # rows that contain a motion
     _levels: dict[int, Level] = field(default_factory=dict, repr=False)
 
     @cached_property

@@ -1,7 +1,7 @@
 """Poles and zeros of any network in a disc about 0: damped, with motors, loops, delays, outputs anywhere.
 
 Numerator and denominator are entire functions whose values elimination gives. How fast they grow tells how
-many roots a disc contains, about (Jensen); in one that holds enough they become series, whose roots are
+many roots a disc contains, about (Jensen); in one that contains enough they become series, whose roots are
 counted and proved.
 """
 
@@ -309,7 +309,7 @@ def enclosed_roots(series: DiscSeries, at_zero: int, *, is_even: bool = False) -
 def _clusters(
     series: DiscSeries, guesses: Sequence[acb], boxes: Sequence[tuple[acb, int]]
 ) -> list[tuple[acb, int]]:
-    """Return discs about guesses too close together to be told apart, with how many roots they hold."""
+    """Return discs about guesses too close together to be separated, with how many roots they contain."""
     clusters: list[tuple[acb, int]] = []
     for guess in guesses:
         if any(box.contains(guess) for box, _ in clusters):

@@ -245,7 +245,7 @@ def _polynomial_at(sizes: Sequence[float], x: float) -> float:
 
 
 def ball_about_zero(size: arb) -> acb:
-    """Return a box about 0 that holds all numbers of a size."""
+    """Return a box about 0 that contains all numbers of a size."""
     reach = arb(0, size.abs_upper())
     return acb(reach, reach)
 

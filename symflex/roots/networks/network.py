@@ -30,7 +30,7 @@ MASS_BITS = 256  # precision of the proof that inertia is not negative, if numbe
 
 
 class OtherNetworkError(Exception):
-    """The equations are not those of an undamped network; the message says why."""
+    """The equations are not those of an undamped network; the message gives the reason."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,7 +192,7 @@ class _NetworkReading:
         )
 
     def _signals(self, rows: Mapping[Variable, Terms]) -> dict[Variable, Terms]:
-        """Return signals as forms of the other variables; those that feed back are not told apart."""
+        """Return signals as forms of the other variables; those that feed back are not separated."""
         signals: dict[Variable, Terms] = {}
         pending = deque(rows)
         waited = 0

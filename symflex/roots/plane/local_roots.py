@@ -249,7 +249,7 @@ def prove_together(
                 if series.count(size) == count:
                     place = snapped(centre, size, even=even, real=function.is_real)
                     if place != centre and series.count(WIDER * size) == count:
-                        # About a point of the axis: it holds the disc, and is held by the wider one.
+                        # About a point of the axis: it contains the disc, and is held by the wider one.
                         centre, size = place, (2 * size).mid()
                     return in_disc(centre, size, count // function.power, even=even, real=function.is_real)
                 size = (size * GROWTH).mid()

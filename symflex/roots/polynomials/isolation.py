@@ -1,8 +1,8 @@
 """Isolation of the simple roots of one real polynomial, all at growing precision.
 
 Input: a square-free polynomial and the digits wanted. Output: disjoint discs in the closed upper half-plane
-that, with their mirror images, hold all roots. A cluster that the constants' balls never tell apart comes out
-as one disc with its count.
+that, with their mirror images, contain all roots. A cluster that the balls of constants never separate
+becomes one disc with its count.
 """
 
 from __future__ import annotations

@@ -177,7 +177,7 @@ def test_sections_are_the_polynomials_they_come_from():
 
 
 def test_poles_that_cannot_be_told_apart_share_a_section():
-    # (s + 1)^2, whose poles come to p = 19/21; enclosures that hold both may be real or a pair.
+    # (s + 1)^2, whose poles come to p = 19/21; enclosures that contain both may be real or a pair.
     sampled = sampled_transfer_function(rational("1/(s^2 + 2*s + 1)"), Sampling(Fraction(1, 10), "tustin"))
     poles = tuple(acb(pole.real, arb(0, 1e-20)) for pole in sampled.poles)
     (section,) = difference_equation(replace(sampled, poles=poles)).sections

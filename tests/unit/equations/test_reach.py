@@ -105,7 +105,7 @@ def test_a_part_that_is_driven_one_way_is_one_that_no_output_sees():
     # The force on y follows from x, and y acts on nothing.
     push = 'push = { type = "force_source", at = "y", f = "k*x" }'
     assert messages(elements=push) == [
-        ("SF654", "mass 'b' changes no transfer function: no output sees it", LOOSE, "warning")
+        ("SF654", "mass 'b' changes no transfer function: no output depends on it", LOOSE, "warning")
     ]
 
 

@@ -18,7 +18,7 @@ def function(text):
 
 
 def holds(ball, value, share=1e-14):
-    """Tell whether a ball holds a number that is itself known to some share."""
+    """Tell whether a ball contains a number that is itself known to some share."""
     return abs(float(ball.mid()) - value) <= float(ball.rad()) + share * abs(value)
 
 

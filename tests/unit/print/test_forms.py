@@ -843,7 +843,7 @@ def test_a_gain_is_printed_in_ones_own_names_too():
 
 
 def test_names_that_are_not_equal_or_only_for_some_signs_are_not_printed():
-    # sqrt(k*m)*sqrt(k/m) is k, but -k where m is negative and k is not; m*s^2 + c*s + k holds no k + c.
+    # sqrt(k*m)*sqrt(k/m) is k, but -k where m is negative and k is not; m*s^2 + c*s + k contains no k + c.
     for own_names, assume in [(RESONANCE, 'assume = "real"'), ('a = "k + c"', "")]:
         tf = oscillator(own_names, assume)
         assert printed(tf) == ("1", "m*s^2 + c*s + k"), own_names

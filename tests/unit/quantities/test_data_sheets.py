@@ -37,7 +37,7 @@ RIGHT = """mV/g_n V*s^2/m mAh/g Ah/kg J/g J/(kg*K) L/min mol/min cm^3/min g*mm k
 kg/m g/m lb/ft oz g kg mg t min h rpm rev/min V/rpm V/krpm N*m/A ozf*in/A mS kS S GS pF Gohm mT T K K/W
 J/K deg/s rad/s/V m/s^2 V/N mV/kgf N/kg m^3/kg kg/A g/mol 1/s Hz kgf kgf*cm psi mil s C C/mol A/m V/m
 A/kHz mA/gf"""
-# A unit, the one its place wants, and what the message says to write.
+# A unit, the one its place wants, and what the message suggests.
 SLIPS = """lb/in N/m lbf/in, oz*in N*m ozf*in, kg*cm N*m kgf*cm, g m/s^2 g_n, V/g V*s^2/m V/g_n, g/mm
 N/m gf/mm, lbf kg lb, S s s, 1/S 1/s 1/s, nm N*m N*m, T kg t, C K K, K Ohm kOhm, m H mH, m s -, kg s -,
 N/m kg -"""

@@ -61,7 +61,7 @@ def formula(s, output, given):
 
 
 def holds(ball, exact):
-    """Tell whether a ball holds a number known to forty digits, and is small itself."""
+    """Tell whether a ball contains a number known to forty digits, and is small itself."""
     with ctx.workprec(400):
         at = acb(mpmath.nstr(exact.real, 60), mpmath.nstr(exact.imag, 60))
         return bool(abs(ball - at) < abs(at) * acb(10).real ** -DIGITS)

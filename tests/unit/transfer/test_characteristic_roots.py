@@ -36,7 +36,7 @@ def test_pairs_follow_each_other():
 
 
 def test_roots_that_meet_on_the_ball_are_not_told_apart():
-    # x^2 = s on a ball that holds s = 0.
+    # x^2 = s on a ball that contains s = 0.
     assert characteristic_roots([-on(0.001, 0.01), acb(0)], even=True) is None
     assert characteristic_roots([-on(0.001, 0.01), acb(0)]) is None
 

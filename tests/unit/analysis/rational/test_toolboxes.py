@@ -66,7 +66,7 @@ def test_what_other_programs_get_is_the_function(name, output):
     exact = np.array([H(1j * w) for w in omega])
     off = {n: np.max(np.abs(act(H, omega) / exact - 1)) / limit for n, (act, limit) in CONVERSIONS.items()}
     assert max(off.values()) < 1, off
-    # Zeros and poles are the proved ones.
+    # Zeros and poles are the certified ones.
     system, control_poles = H.to_scipy(), H.to_control().poles()
     for found, roots in ((system.poles, H.poles(digits=25)), (system.zeros, H.zeros(digits=25))):
         expected = [r.value for r in roots for _ in range(r.multiplicity)]

@@ -334,7 +334,7 @@ def test_universal_files_name_node_direction_and_unit(tmp_path):
     assert abs(found.values) == pytest.approx(SIZE)
     assert found.is_magnitude
     path.write_text("    -1\n    15\n         1         0         0         0  0. 0. 0.\n    -1\n")
-    with pytest.raises(DataError, match=r"it holds datasets 15 \(nodes\)"):
+    with pytest.raises(DataError, match=r"it contains datasets 15 \(nodes\)"):
         read_measurement(path)
 
 
