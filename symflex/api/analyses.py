@@ -115,7 +115,7 @@ class Analyses(Plotted):
         r"""Return the response to a unit impulse at t = 0; see :meth:`step_response`.
 
         If the function has direct feedthrough, the response contains an impulse, which has no
-        value: ``impulses`` holds its time and weight, and those of its derivatives.
+        value: ``impulses`` contains its time and weight, and those of its derivatives.
 
         Examples
         --------
@@ -180,7 +180,7 @@ class Analyses(Plotted):
         """Return the poles by natural frequency, both members of each conjugate pair.
 
         Poles in the right half-plane are always included; those outside the requested region come last.
-        :attr:`PoleZeroMap.verdict` of :meth:`pole_zero_map` says whether these are all.
+        :attr:`PoleZeroMap.verdict` of :meth:`pole_zero_map` tells whether these are all.
 
         Parameters
         ----------
@@ -188,7 +188,7 @@ class Analyses(Plotted):
             Only the lowest modes, with the roots at the origin. For a distributed system, the default is
             the number in the model's ``[analysis]``, or five.
         mode : int, optional
-            Only the mode of this number, from 1 by natural frequency, both members of a conjugate pair; of a
+            Only the mode of this number, from 1 by natural frequency, both members of a conjugate pair; in an
             undamped system it is found without those below it.
         band : (float, float), optional
             Only natural frequencies in this band [Hz].
@@ -406,7 +406,7 @@ class Analyses(Plotted):
         ----------
         modes : int, optional
             How many modes are kept, in addition to roots at the origin. By default those up to the end of
-            ``band``, else as many as the model's ``[analysis]`` says, else five.
+            ``band``, else as many as the model's ``[analysis]`` gives, else five.
         form : str
             ``product``: the poles and zeros, right to the leading order at s = 0; ``modal``: the principal
             parts at the poles, and a constant that makes the finite part at s = 0 exact.

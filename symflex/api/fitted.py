@@ -67,7 +67,7 @@ class Fit(Printed):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What to be careful about."""
+        """Cautions about the fit, as sentences."""
         return self.found.warnings
 
     @property

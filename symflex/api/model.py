@@ -324,7 +324,7 @@ class Model:
         outputs, inputs : sequence of str, optional
             Names; inputs that are not named are zero.
         minimal : bool
-            Leave out what no input reaches or no output shows.
+            Leave out uncontrollable and unobservable states.
 
         Raises
         ------
@@ -520,7 +520,7 @@ class Model:
         over, ranges, resolve, **values : optional
             As for :meth:`stability`.
         box : bool
-            Draw the largest box about the declared values in which all is as there.
+            Draw the largest box about the declared values in which the count of unstable poles is the same.
         width, font, ax : optional
             As for :meth:`BoundTransferFunction.bode`; one axes.
 
@@ -573,7 +573,7 @@ class Model:
         xlim, ylim : (float, float), optional
             Ends of the axes [rad/s].
         verdict : bool
-            Say above the figure at which gains the loop is stable.
+            Print above the figure at which gains the loop is stable.
         width, font, ax : optional
             As for :meth:`BoundTransferFunction.bode`; one axes.
         **values : number or str
@@ -858,18 +858,18 @@ class Model:
         >>> sweep["im"].tolist(), sweep.is_certified
         ([[1.0], [2.0], [3.0]], True)
         """
-        from symflex import sweep as sweep_room  # imports numpy and scipy
+        from symflex import sweep as sweep_package  # imports numpy and scipy
         from symflex.api.sweep import Sweep
         from symflex.errors import Diagnostic, UsageError
 
-        if of not in sweep_room.QUANTITIES:
-            hint = "choose from: " + ", ".join(sweep_room.QUANTITIES)
+        if of not in sweep_package.QUANTITIES:
+            hint = "choose from: " + ", ".join(sweep_package.QUANTITIES)
             raise UsageError(Diagnostic("SF902", f"nothing is called '{of[:64]}' in a sweep", None, hint))
         if of == "response" and not len(frequencies):
             raise UsageError(Diagnostic("SF902", "a response needs frequencies"))
         given = SweepOptions(over, draws, seed, of, tf, modes, band, gain=gain, output=output, fresh=fresh)
-        task, design = sweep_room.plan_sweep(self.resolved, given, frequencies)
-        return face_of(Sweep, sweep_room.sweep(task, design, given, executor, workers=workers))
+        task, design = sweep_package.plan_sweep(self.resolved, given, frequencies)
+        return face_of(Sweep, sweep_package.sweep(task, design, given, executor, workers=workers))
 
     def live(self, *tfs: str) -> LivePage:
         """Return a page with a slider for every parameter, like ``symflex live``; a notebook shows it.
@@ -1022,7 +1022,7 @@ def load(
         Values that replace those of the file: quantities (``"80 kN/m"``), or numbers in SI
         units. They are checked like the file's own.
     allow_outside : iterable of str or Path
-        Folders that its ``model`` blocks may read besides the folder of ``path`` and those below.
+        Folders that its ``model`` blocks may read besides the folder of ``path`` and its subfolders.
 
     Raises
     ------

@@ -73,7 +73,7 @@ class Plotted:
         *others : BoundTransferFunction or BoundNestedTransferFunction
             Drawn over it.
         band : (float, float), optional
-            Frequencies shown [Hz], or texts with units; by default the model's, or all poles and zeros.
+            Frequencies shown [Hz], or strings with units; by default the model's, or all poles and zeros.
         ylim, phase : (float, float), optional
             Ends of the axes of magnitudes [dB] and phases [deg].
         width : float or str, optional
@@ -140,7 +140,7 @@ class Plotted:
         xlim, ylim : (float, float), optional
             Ends of the axes [rad/s].
         verdict : bool
-            Say above the panels whether the functions are stable.
+            Print above the panels whether the functions are stable.
         spread : str or float, optional
             Shade where roots lie for all combinations of values; see :meth:`root_clouds`.
 
@@ -166,7 +166,7 @@ class Plotted:
         font: str | None = None,
         ax: AxesGiven | None = None,
     ) -> Figure:
-        r"""Return the values on the imaginary axis as a curve; the legend says how many poles are unstable.
+        r"""Return the values on the imaginary axis as a curve; the legend counts the unstable poles.
 
         :meth:`Model.nyquist` draws the gain of a loop that is closed in the model.
 

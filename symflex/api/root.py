@@ -101,7 +101,7 @@ class Root:
 
     @property
     def multiplicity(self) -> int:
-        """How often the root counts."""
+        """The multiplicity of the root."""
         return self.certified_root.multiplicity
 
     @property

@@ -32,7 +32,7 @@ class StabilityBoundary:
     frequencies_hz : tuple of float
         At which poles are on the axis; empty where one passes through infinity.
     entering : int
-        By how many the poles in the right half-plane grow in number, as the gain grows.
+        The change of the number of poles in the right half-plane, as the gain grows.
     """
 
     gain: mpmath.mpf

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from symflex import sweep as sweep_room
+from symflex import sweep as sweep_package
 from symflex.print.latex import width_of
 
 if TYPE_CHECKING:
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, repr=False, slots=True)
-class Sweep(sweep_room.Sweep):
+class Sweep(sweep_package.Sweep):
     """What was found at all points of a design, which draws itself. See :class:`symflex.sweep.Sweep`."""
 
     def plot(
@@ -31,7 +31,7 @@ class Sweep(sweep_room.Sweep):
         Parameters
         ----------
         modes : int, optional
-            Only those with the first names.
+            How many modes, the first by name.
         width, font, ax : optional
             As for :meth:`BoundTransferFunction.bode`; as many axes as there are panels.
 

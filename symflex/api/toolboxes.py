@@ -86,7 +86,7 @@ class Toolboxes:
         Parameters
         ----------
         minimal : bool
-            Leave out what the input does not reach or the output does not show. The states left are
+            Leave out uncontrollable and unobservable states. The states left are
             quantities of the model, or differences and other combinations of them.
 
         Raises
@@ -147,7 +147,7 @@ class Toolboxes:
         Returns
         -------
         control.TransferFunction or control.StateSpace
-            Coefficients are the doubles nearest to the exact ones. The attribute ``metadata`` holds units
+            Coefficients are the doubles nearest to the exact ones. The attribute ``metadata`` has units
             and ``coefficients_error``, the error of the function that comes from rounding coefficients.
 
         Raises

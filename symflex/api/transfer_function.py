@@ -261,7 +261,7 @@ class TransferFunction(_Derived):
         return limits_of(self.exact)
 
     def dimensionless(self) -> InLetters:
-        r"""Return the function in groups without dimension: what ``symflex derive --dimensionless`` prints.
+        r"""Return the function in dimensionless groups: what ``symflex derive --dimensionless`` prints.
 
         Examples
         --------
@@ -287,7 +287,7 @@ class TransferFunction(_Derived):
         """Return a function of beams, rods and delays as a rational one, exact up to a power of s, 0 to 12.
 
         At the driven point of a compliance it is the dynamic stiffness that is expanded. Raises UsageError:
-        SF902 where waves do not come to rest at s = 0.
+        SF902 where wavenumbers do not vanish at s = 0.
         """
         from symflex.letters.short import approximation
 
@@ -299,7 +299,7 @@ class TransferFunction(_Derived):
         Parameters
         ----------
         minimal : bool
-            Leave out what the input does not reach or the output does not show, at almost all values of the
+            Leave out states that are uncontrollable or unobservable at almost all values of the
             parameters.
 
         Raises

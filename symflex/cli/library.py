@@ -57,7 +57,7 @@ def new(template: str | None, *, output: str | None, is_list: bool, netlist: str
 
         if not netlist.lower().endswith(NETLISTS):
             hint = f"the name of a netlist ends in {', '.join(NETLISTS)}"
-            raise UsageError(Diagnostic("SF902", f"'{netlist}' is no netlist by its name", None, hint))
+            raise UsageError(Diagnostic("SF902", f"'{netlist}' is not a netlist by its name", None, hint))
         _write_new(read(netlist).text, output)
         return 0
     if template is None or is_list:

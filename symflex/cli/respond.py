@@ -137,7 +137,7 @@ def _samples(
         signal = read_signal(place)
     elif (record := record_in_time(place, given.columns)) is None:
         hint = "a column called time, or --columns t,u,y"
-        raise UsageError(Diagnostic("SF902", f"'{place}' is no record in time", None, hint))
+        raise UsageError(Diagnostic("SF902", f"'{place}' is not a record in time", None, hint))
     else:
         signal, measured = record.driven(output)
     for guess in signal.guesses:

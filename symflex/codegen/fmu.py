@@ -35,7 +35,7 @@ from symflex.codegen.sampled import SampledLanguage, StepFile
 OLD = (1980, 1, 1, 0, 0, 0)
 """When all files of an archive were written: the same model gives the same bytes."""
 COMPILER = ("cc", "-shared", "-fPIC", "-O2", "-std=c99", "-ffp-contract=off", "-fvisibility=hidden")
-NOT_COMPILED = "no C compiler was found: the unit holds sources, and no binary"
+NOT_COMPILED = "no C compiler was found: the unit contains sources, but no binary"
 
 
 def fmu(file: StepFile) -> Export:

@@ -70,7 +70,7 @@ def draw_bode(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
 
     Magnitudes of each unit have a panel, except on the user's axes.
     Peaks and troughs without damping have no end; they run to the frame. Where poles lie in the right
-    half-plane, or may lie there, the legend says so.
+    half-plane, or may lie there, the legend notes it.
     """
     # The default roots of distributed systems only give a band and the poles in the right half-plane.
     given = canvas.band_of(bounds[0].source.model)

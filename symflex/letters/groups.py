@@ -1,4 +1,4 @@
-"""A transfer function in as few groups without dimension as there are.
+"""A transfer function in as few dimensionless groups as there are.
 
 Input: a transfer function in expanded form; the model may prefer groups, in ``[analysis]``.
 Output: its scale, its groups with names and values, and what it is in them.
@@ -73,7 +73,7 @@ BITS, ENOUGH = 192, 64  # precision at the test points, and how many bits of it 
 
 
 def dimensionless_of(tf: AnyTransferFunction) -> InLetters:
-    """Return a transfer function in groups without dimension, its scale, and what these are.
+    """Return a transfer function in dimensionless groups, its scale, and what these are.
 
     Examples
     --------
@@ -120,7 +120,7 @@ def _in_groups(tf: TransferFunction) -> InLetters:
     for text, row in wanted.items():
         main = next(iter(row), "")
         if main not in own or times((row, ONE), (own[main], -row[main])):
-            raise NotInLettersError(f"'{text}' in prefer of [analysis] is no group, or not with the others")
+            raise NotInLettersError(f"'{text}' in prefer of [analysis] is not a group, or not beside others")
     base = {name: ExactValue(ONE) for name in parameters if name not in own}
     model = with_numbers(tf.model, own, base, in_kernels=True)
     form = print_form(derive_all(model, [(tf.output.name, tf.input.name)])[0])

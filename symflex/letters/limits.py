@@ -212,7 +212,7 @@ class LimitFinder:
         """What powers of wavenumbers are, and which powers."""
         laws = self.tf.kernels.dispersions
         if any(law.kind in ("general", "varying") for law in laws) or (self.end != ENDS[0] and self._pairs):
-            raise NotInLettersError("its waves are no roots of one term")
+            raise NotInLettersError("its waves are not roots of one term")
         named = ((n, law.kind, law.characteristic[0]) for law in laws for n in law.wavenumbers)
         own = {"wave": (-1, 2), "bending": (Fraction(1, 4), 4), "pair": (1, 4)}
         return {name: (c * own[kind][0], own[kind][1]) for name, kind, c in named}
@@ -351,7 +351,7 @@ class LimitFinder:
             room = most - rate * (key[i] + key[j])
             p, q, r = cut(u, room - 2 * rate), cut(v, room), cut(u * both + v * 2, room)
             if not (p.is_zero or r.is_zero):
-                raise NotInLettersError("its waves are no roots of one term")
+                raise NotInLettersError("its waves are not roots of one term")
             whole[key] = q if p.is_zero else p * (one**2 - other**2) / 2
         return whole
 

@@ -34,7 +34,7 @@ from symflex.transfer.lowest_terms import cancel
 def truncated(tf: TransferFunction, order: int) -> tuple[TransferFunction, PrintedForm]:
     """Return a distributed function as a rational one, in letters, up to a power of s.
 
-    Raises UsageError: SF902 for a function whose waves do not come to rest at s = 0.
+    Raises UsageError: SF902 for a function whose wavenumbers do not vanish at s = 0.
 
     Examples
     --------
@@ -92,7 +92,7 @@ def _expanded(tf: TransferFunction, count: int) -> tuple[Factored, Factored]:
             above, below = (side.exponent_of(ring.generator(name)) for side in (num, den))
             num, den = num / wave**above, den / wave**below
             if (above - below) % order or num.depends_on(name) or den.depends_on(name):
-                raise NotInLettersError("it is no function of s alone")
+                raise NotInLettersError("it is not a function of s alone")
             num = num * square ** ((above - below) // order)
     except NotInLettersError as error:
         message = f"{tf.name} is not expanded in s: {error.diagnostics[0].message}"

@@ -85,7 +85,7 @@ def read_energy(reader: Reader, section: TableValue | None, taken: Collection[st
     table = reader.table(entry, f"forces of {what}", 'for instance forces = { x = "F" }') if entry else None
     for force in table.entries if table else ():
         if force.key not in {t.value for t in coordinates}:
-            message = f"'{force.key}' is no coordinate of {what}"
+            message = f"'{force.key}' is not a coordinate of {what}"
             reader.note(
                 "SF210", message, force.key_span, f"coordinates: {', '.join(t.value for t in coordinates)}"
             )

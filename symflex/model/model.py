@@ -272,7 +272,7 @@ class Analysis:
     modes: int | None = None
     digits: int | None = None
     print: tuple[tuple[str, Expression], ...] = ()
-    prefer: tuple[Expression, ...] = ()  # groups without dimension
+    prefer: tuple[Expression, ...] = ()  # dimensionless groups
 
 
 @dataclass(frozen=True, slots=True)

@@ -385,11 +385,11 @@ class _AboutRest:
         )
 
     def check_names(self, rest: AtRest) -> None:
-        """Note values of what stands in no equation."""
+        """Note values of what occurs in no equation."""
         for name, value in rest.values.items():
             if name not in self.seen and name.rstrip("'") not in self.seen:
                 hint = nearest(name, self.seen) or EXAMPLE
-                message = f"'{name}' of [operating_point] stands in no equation"
+                message = f"'{name}' of [operating_point] occurs in no equation"
                 self.reader.note("SF210", message, value.span or rest.span, hint)
             base, order = name.rstrip("'"), name.count("'")
             lower_rates = {base + "'" * k for k in range(1, order)}

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 Made = TypeVar("Made")
 
-NAMED = "a formula cannot hold a value with a unit: declare it in [parameters]"
+NAMED = "a formula cannot contain a value with a unit: declare it in [parameters]"
 LOSS_WORDS = ("loss", "loss_factor", "tan_delta", "damping", "structural", "g")
 """What a key for a loss factor is called elsewhere."""
 SHOWN = 40  # characters of a value that a message repeats

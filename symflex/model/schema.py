@@ -267,7 +267,7 @@ def _analysis() -> Schema:
         "modes": _count(MODES_LIMIT, "how many modes are computed"),
         "digits": _count(DIGITS_LIMIT, "digits of results"),
         "print": _said({"type": "object", "additionalProperties": VALUE}, "names formulas are printed in"),
-        "prefer": _said({"type": "array", "items": TEXT}, "groups without dimension to write functions in"),
+        "prefer": _said({"type": "array", "items": TEXT}, "dimensionless groups to write functions in"),
     }
     keys = {key: own_keys.get(key, {}) for key in ANALYSIS_KEYS}
     return {**_closed(keys), "description": "defaults of the commands"}

@@ -328,14 +328,14 @@ class PoleZeroMap:
     excluded : tuple of Exclusion
         Parts of the region that were left out.
     is_default_region : bool
-        A region was chosen because a function with infinitely many roots was to be searched for all.
+        A region was chosen because all roots were requested of a function with infinitely many.
     is_infinite : bool
         The function is transcendental: there are roots beyond any region.
     verdict : StabilityVerdict
-        Whether the model is stable: about all poles, not only those in the region.
+        Whether the model is stable, judged by all poles, not only those in the region.
     unstable : tuple of Root
-        Poles in the right half-plane outside the region that was asked for. Where none was and a number of
-        modes was chosen, they are among ``poles``, wherever they lie.
+        Poles in the right half-plane outside the requested region. Where none was requested but a number
+        of modes, they are among ``poles``, wherever they lie.
     """
 
     tf: str

@@ -192,11 +192,11 @@ def read_sweep(path: str | Path) -> Sweep:
             raise OverflowError
         sweep = _from_npz(data) if data[:2] == b"PK" else _from_netcdf(data)
     except OverflowError:
-        raise _no_sweep(path, f"it is larger than {SIZE_LIMIT} bytes, or holds too many arrays") from None
+        raise _no_sweep(path, f"it is larger than {SIZE_LIMIT} bytes, or contains too many arrays") from None
     except (ValueError, KeyError, TypeError, IndexError, AttributeError, RecursionError) as error:
         raise _no_sweep(path, str(error)) from None
     if sweep.attribute("schema") != SCHEMA:
-        raise _no_sweep(path, "it does not say that it holds one")
+        raise _no_sweep(path, "it is not marked as one")
     return sweep
 
 

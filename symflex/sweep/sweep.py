@@ -289,7 +289,7 @@ def _stability(sweep: Sweep, points: str) -> list[str]:
     """Return at how many points the system is stable, and at how many some of it moves unseen."""
     words = _words(sweep)
     if not words:
-        return [f"{INDENT}stability not known: this file does not say"]
+        return [f"{INDENT}stability not known: this file does not record it"]
     shown = {word.replace("unknown", "stability not known"): count for word, count in words.items() if count}
     first, *said = [f"{word} at {count}" for word, count in shown.items()]
     unseen = int(np.sum(sweep["hidden_motion"]))

@@ -342,7 +342,7 @@ def nested_transfer(block: PlacedBlock, ring: Ring) -> tuple[Factored, Factored]
     tf = derive(assemble(block.submodel, nested_transfer), *block.tf)
     if not tf.is_rational or tf.model.root:
         message = (
-            f"block '{block.name}' stands for a distributed system or a root of s, which no block can hold"
+            f"block '{block.name}' stands for a distributed system or a root of s, which no block can be"
         )
         hint = "write its elements and fields into this file"
         raise ModelError(Diagnostic("SF910", message, block.span, hint))

@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 
 from symflex import pipeline
-from symflex import sweep as sweep_room
+from symflex import sweep as sweep_package
 from symflex.errors import SymflexError
 from symflex.options import SweepOptions
 from symflex.sweep import read_design, sweep_task
@@ -34,7 +34,7 @@ def seeds():
     found = []
     for of, frequencies in (("poles", ()), ("zeros", ()), ("response", (0.1, 1.0)), ("margins", ())):
         task = sweep_task(model, ("X", "F"), design, of, None, frequencies, "K" if of == "margins" else "")
-        sweep = sweep_room.sweep(task, design, SweepOptions())
+        sweep = sweep_package.sweep(task, design, SweepOptions())
         found += [netcdf_bytes(sweep), unpacked(npz_bytes(sweep))]
     return found
 

@@ -42,8 +42,8 @@ def test_json_holds_the_explanation_only_when_asked_for(capsys):
     assert explanation["status"] == "proved"
     assert explanation["spec"] == 'hold = { type = "fixed", at = "x_act" }'
     assert explanation["power_of_s"] == 1
-    assert explanation["parts"] == [
-        {"elements": ["tip_side", "drive", "damping"], "fields": [], "signals": [], "poles": 2, "driven": False}
-    ]
+    (part,) = explanation["parts"]
+    assert (part["elements"], part["poles"], part["driven"]) == (["tip_side", "drive", "damping"], 2, False)
+    assert (part["fields"], part["signals"]) == ([], [])
     assert run([a for a in (*given, "--json") if a != "--explain"]) == 0
     assert "explanation" not in json.loads(capsys.readouterr().out)

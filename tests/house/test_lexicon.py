@@ -18,7 +18,7 @@ PARTS = (
     "(?:arms?|beams?|frames?|links?|members?|models?|networks?|rods?|shafts?|strings?|structures?|systems?)"
 )
 KEYS = "(?:mass|length|density|stiffness|cross-section|shear modulus|damping coefficient|inductance|gain)"
-HOLDERS = "(?:discs?|box|boxes|balls?|cells?|files?|formulas?|models?|tables?|numerators?|denominators?|expressions?)"
+HOLDERS = "(?:discs?|box|boxes|balls?|cells?|files?|formulas?|models?|tables?|numerators?|denominators?)"
 SPEAKERS = (
     "(?:pages?|program|outputs?|reports?|messages?|lists?|tables?|files?|symflex|commands?|sections?|hints?)"
 )
@@ -50,7 +50,7 @@ LEXICON = {
     r"\bhalf planes?\b": ("half-plane", {}),
     rf"\b{HOLDERS} (?:may |then |also )?holds?\b(?! for| at| if| where| with)|\bholds? no\b": ("contain", {}),
     r"\bgain's own value\b": ("nominal gain", {}),
-    r"\brooms? (?:of the program|imports?|offers?)\b|\bRooms\b": ("package, layer", {}),
+    r"\brooms? (?:of the program|imports?|offers?)\b|\bRooms\b|_room\b|\bas room\b": ("package, layer", {}),
     r"\bat (?:and|or) below (?:its|the|a) folder\b|\b(?:specifications|files|all) in it and below\b": (
         "in that folder and its subfolders",
         {},

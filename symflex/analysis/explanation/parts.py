@@ -228,7 +228,7 @@ class Relation:
     transmission: Factored | None
     apart: Factored  # what only the constrained system has: poles of it that are not zeros
     has_zeros: bool  # whether the numerator depends on s but for ``factor``
-    is_delayed: bool  # the constant holds exponentials of s besides, which have neither zeros nor poles
+    is_delayed: bool  # the constant also contains exponentials of s, which have neither zeros nor poles
 
     @property
     def is_equality(self) -> bool:

@@ -74,14 +74,14 @@ class ZeroExplanation(Printed):
     is_direct : bool
         The input acts on the very coordinate that the output shows.
     held, words, spec : str
-        What is zero in the constrained system, in words, and the line that makes it of the specification.
+        What is zero in the constrained system, in words, and the line of the specification for it.
     order : int
-        Power of s by which the output multiplies its coordinate: zeros at 0 that contain nothing.
+        Power of s by which the output multiplies its coordinate: zeros at 0 without a constraint.
     filtered, extra, transmission : str
-        Factors in s: of the output itself; whose roots are poles of the constrained system and no zeros;
-        whose roots are zeros and no poles of it. Empty without such, ``...`` when too long to print.
+        Factors in s: of the output itself; whose roots are poles of the constrained system but not zeros;
+        whose roots are zeros but not poles of it. Empty without such, ``...`` when too long to print.
     is_delayed : bool
-        The numerator contains exponentials of s besides, which have no zeros.
+        The numerator also contains exponentials of s, which have no zeros.
     has_hidden : bool
         There are hidden modes: together with the zeros they are the poles of the constrained system, but
         cancel with poles of the system itself.
@@ -128,7 +128,7 @@ class ZeroExplanation(Printed):
         return f"<ZeroExplanation {self.tf}: {self.kind}, {self.status}>"
 
     def passages(self) -> Iterator[Passage]:
-        """Return the title and what there is to say."""
+        """Return the title and the text."""
         return (Passage(lines) for lines in ([_title(self)], *explanation_paragraphs(self)))
 
     def __str__(self) -> str:
@@ -255,7 +255,7 @@ def _proof(explained: ZeroExplanation) -> str:
         divisor = explained.extra if explained.extra != "..." else "What is divided by"
         said.append(f"{divisor} is the driven part's own.")
     if explained.is_delayed:
-        said.append("num also holds exponentials of s, which have no zeros.")
+        said.append("num also contains exponentials of s, which have no zeros.")
     if explained.has_hidden:
         said.append("Factors that num shares with the poles have cancelled and are listed as hidden.")
     return " ".join(said)

@@ -135,7 +135,7 @@ def approximate(
     """Return a rational function close to a transfer function at low frequencies.
 
     ``modes`` are kept, besides roots at 0: by default those up to the end of ``band``, else as many as the
-    model's ``[analysis]`` says, else five; if these are all, the function is exact. ``form`` is ``product``
+    model's ``[analysis]`` gives, else five; if these are all, the function is exact. ``form`` is ``product``
     or ``modal``, see :data:`symflex.analysis.rational.FORMS`. The error is stated in ``band`` [Hz], by
     default from a thousandth of the lowest natural frequency to the highest one kept.
 

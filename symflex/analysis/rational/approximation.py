@@ -58,7 +58,7 @@ class BandError:
     worst_at_hz : float
         Where it was met [Hz].
     samples : int
-        How many frequencies were looked at.
+        How many frequencies were sampled.
     is_rigorous : bool
         Whether ``worst`` bounds the error between the samples too.
     """
@@ -346,9 +346,9 @@ class RationalApproximation(Printed, Approximant, RationalFunction):
         return _doubles(self.num, self.tf), _doubles(self.den, self.tf)
 
     def label(self) -> str:
-        """Return a name that says what this is and up to which frequency it is within 1 %.
+        """Return a name with the form and the frequency up to which it is within 1 %.
 
-        Only letters, digits and underscores, as programs for control design want names.
+        Only letters, digits and underscores, as control software requires.
         """
         name = self.tf.replace("/", "_over_")
         if self.is_exact:

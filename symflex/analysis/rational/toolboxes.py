@@ -96,7 +96,7 @@ class RationalFunction(ABC):
         """Return a system of python-control, named by :meth:`label`, with named input and output.
 
         ``form`` is ``transfer-function`` or ``state-space``, which loses no digits. The attribute
-        ``metadata`` holds units, the frequencies up to which it is valid, and what rounding coefficients does
+        ``metadata`` has units, the frequencies up to which it is valid, and what rounding coefficients does
         to it. SF902 when python-control is not installed, and for an unknown form; SF233 when a coefficient
         is too large or too small for double precision; SF236 as :meth:`state_space`.
         """

@@ -39,7 +39,7 @@ class EnclosedResponse:
     """What an output does after t = 0 when an input of unit size begins, from rest or from ``initial``.
 
     Where it jumps it has two values: that at t = 0 is the limit from the right, and the ball of one at a
-    later jump holds both sides.
+    later jump contains both sides.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ class EnclosedResponse:
     enclosures : tuple of flint.arb, n of them
         The value at each time lies in its ball, where ``certified``.
     impulses : tuple of ImpulseAt
-        Impulses that the response holds besides values, up to the last time; with them it is a distribution.
+        Impulses in the response besides the values, up to the last time; with them it is a distribution.
     jumps : tuple of JumpAt
         Where the values jump, after t = 0 and up to the last time.
     certified : bool
@@ -63,17 +63,17 @@ class EnclosedResponse:
     reason : str or None
         What is not proved.
     digits : int
-        Digits asked for, of the largest value.
+        Requested digits of the largest value.
     shaper : str or None
         The kind of shaper that the input went through.
     modes : PartialSum or None
-        The proved sum over modes that it is, at any time, where it was found so.
+        The proved sum over modes, at any time, if the response was found as one.
     method : str
-        What found it, such as ``partial fractions`` or ``passive modes``; empty where nothing is to be found.
+        The method that found it, such as ``partial fractions`` or ``passive modes``; empty if there was none.
     initial : str
-        Values of states from which it begins, such as ``x = 1 mm``.
+        Initial values of states, such as ``x = 1 mm``.
     refused : tuple of str
-        Where it is not certified, the ways that would prove it, and why each does not answer.
+        If it is not certified: the methods that would prove it, and why each refused.
     measured : (str, array of float) or None
         Name and values, at the same times, of an output that was measured with this input.
     """
@@ -140,7 +140,7 @@ class EnclosedResponse:
 
     @property
     def radius(self) -> npt.NDArray[np.float64]:
-        """How far each value may be off, what rounding to doubles takes away among it."""
+        """How far each value may be off, rounding to doubles included."""
         return self._doubles[1]
 
     def in_decimals(self, ball: arb) -> RootDecimals:

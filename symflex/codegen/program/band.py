@@ -199,7 +199,7 @@ class BandForm:
             else "The poles and zeros in the band and around it are proved, and that there are no others."
         )
         end = f"abs(s) up to {self.end:.5g} rad/s, {float(self.end_hz):.5g} Hz"
-        near = f"it holds near the imaginary axis for {end}, and is NaN beyond"
+        near = f"it is valid near the imaginary axis for {end}, and is NaN beyond"
         holds = near if self.is_limited else f"it was measured for {end}"
         return (
             formula,

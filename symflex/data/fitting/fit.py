@@ -417,7 +417,7 @@ def _poor(fit: ResonanceFit) -> tuple[str, ...]:
     if fit.problem.free.gain and not np.all(errors.gain <= WEAK * np.abs(modes.gain)):
         is_beyond = (modes.omega_z > fit.problem.band[1]) & (modes.zeta_z < 0)
         is_lag = not fit.problem.free.delay and bool(np.any(modes.real_z < 0) or np.any(is_beyond))
-        advice = ": zeros on the right above the band may stand for a delay, try --delay"
+        advice = ": zeros in the right half-plane above the band may be a delay, try --delay"
         reasons.append("the gain is less than twice its standard error" + advice * is_lag)
     for r, line in enumerate(fit.problem.lines):
         if reasons and (k := step_line(line.omega, line.measured.values)) is not None:
@@ -508,7 +508,7 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
         if narrow:
             pairs = ", ".join(map(str, narrow))
             said = f"fewer than four lines in the half-power bandwidth of pole pair {pairs}: if the estimate "
-            warnings.append(f"{said}used a Hann window, say --window hann, or damping comes out too large")
+            warnings.append(f"{said}used a Hann window, give --window hann, or damping comes out too large")
             break
     several = ", the responses one by one, or --driving OUT/IN" if modes.responses > 1 else " or more --modes"
     advice = "" if fit.problem.has_base else f"; try --slope N{several}"

@@ -94,7 +94,7 @@ def _octave_variables(data: bytes) -> Arrays:
     text, variables = data.decode("utf-8", "replace").replace("\r\n", "\n") + "\n", {}
     for name, columns, body in _OCTAVE_VARIABLE.findall(text):
         numbers = [number(cell) for cell in body.split()]
-        require(None not in numbers, f"{name[:40]} holds what is not a number")
+        require(None not in numbers, f"{name[:40]} contains something other than a number")
         width = int(columns or 1)
         require(width > 0 and len(numbers) % width == 0, f"{name[:40]} is cut short")
         variables[name] = np.array(numbers).reshape(-1, width).squeeze()
@@ -177,7 +177,7 @@ def arrays_in(name: str, data: bytes, suffix: str) -> Arrays:
         raise DataError(Diagnostic("SF601", f"'{name}' is not {kind}: {reason}")) from None
     except OverflowError as error:
         message = (
-            f"'{name}': {error}" if error.args else f"'{name}' holds more than {MAX_BYTES} bytes of data"
+            f"'{name}': {error}" if error.args else f"'{name}' contains more than {MAX_BYTES} bytes of data"
         )
         raise DataError(Diagnostic("SF607", message)) from None
     if suffix != ".mat":
@@ -187,7 +187,7 @@ def arrays_in(name: str, data: bytes, suffix: str) -> Arrays:
     variable, of = next(((k, o) for k, o in objects if isinstance(o, ClassName)), ("", None))
     if of and not any(a.size > 2 and a.dtype.kind in "fciu" for a in plain.values()):  # noqa: PLR2004
         what = f"an object of the class {of.name[:40]}"
-        message = f"'{name}': {variable[:40]} is {what}, which MATLAB alone reads"
+        message = f"'{name}': {variable[:40]} is {what}, which only MATLAB reads"
         hint = (
             f"in MATLAB: [H, w] = frdata({variable}); save('FILE.mat', 'H', 'w', '-v7') "
             f"(w in rad/s, unless {variable}.FrequencyUnit says Hz: then call it f)"
@@ -222,7 +222,7 @@ def responses_of(arrays: Arrays, name: str, stem: str, asked: str = "") -> tuple
     if asked and "=" not in asked:
         hint = f"such as --columns f=NAME,h=NAME; it has {listed_names(list(arrays))}"
         raise UsageError(
-            Diagnostic("SF902", f"'{name}' holds several arrays: --columns names them", None, hint)
+            Diagnostic("SF902", f"'{name}' contains several arrays: --columns names them", None, hint)
         )
     scopes: dict[str, dict[str, Array]] = {}
     for key, array in arrays.items():
@@ -453,7 +453,7 @@ def _from_unknown(arrays: Arrays, name: str, stem: str) -> tuple[MeasuredRespons
 
 
 def _ask_unit(what: str, name: str, in_hz: str, in_rad: str) -> DataError:
-    message = f"'{name}': {what[:60]} is in Hz or in rad/s, and nothing says which"
+    message = f"'{name}': {what[:60]} is in Hz or in rad/s, and the file does not tell which"
     return DataError(Diagnostic("SF602", message, None, f"add {in_hz} for Hz, or {in_rad} for rad/s"))
 
 
@@ -481,5 +481,5 @@ def _rows(array: Array, size: int, name: str, what: str) -> Array:
     if not len(table):
         raise DataError(Diagnostic("SF605", f"'{name}': {what} is empty"))
     if len(table) > MAX_RESPONSES:
-        raise DataError(Diagnostic("SF607", f"'{name}' holds more than {MAX_RESPONSES} responses"))
+        raise DataError(Diagnostic("SF607", f"'{name}' contains more than {MAX_RESPONSES} responses"))
     return table

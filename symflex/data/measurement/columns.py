@@ -106,7 +106,7 @@ HINT: Final = (
     "columns: frequency_hz; re, im or magnitude_db, phase_deg or magnitude, phase_rad; coherence if known"
 )
 WITHOUT_TIME: Final = "of a record in time, say the sampling time: --columns {}"
-WITHOUT_AXIS: Final = "if the file has no frequencies, --from HZ --step HZ say them"
+WITHOUT_AXIS: Final = "if the file has no frequencies, --from HZ --step HZ give them"
 UNDECIDED: Final = 1.5
 """How much less like a causal function the other reading has to be, as a natural logarithm."""
 WRAPPED: Final = 2 * np.pi * 1.001
@@ -404,7 +404,7 @@ def assembled(
     made = [sweep for m in made for sweep in _sweeps(m, settings, guesses)]
     made = [m for m in made if np.any(m.values)] or made  # memories of analysers that contain nothing
     if len(made) > MAX_RESPONSES:
-        raise DataError(Diagnostic("SF607", f"'{file}' holds more than {MAX_RESPONSES} responses"))
+        raise DataError(Diagnostic("SF607", f"'{file}' contains more than {MAX_RESPONSES} responses"))
     made = _made_over_input(made, guesses)
     gappy = [m for m in made if not are_few(~np.isfinite(m.values))]
     if problems := [d for m in gappy for c in m.columns for d in _wrong(c, m.frequency_hz)]:
@@ -552,7 +552,7 @@ def _made_over_input(made: list[Assembled], guesses: list[str]) -> list[Assemble
     signals = [_SIGNALS.get(m.label.lower(), "") for m in made]
     if any(signals) and any(m.label.lower() in ("z", "impedance") for m in made):
         listed = ", ".join(f"'{m.label}'" for m, signal in zip(made, signals, strict=True) if signal)
-        guesses.append(f"{listed} beside the impedance: signals, no responses, and left out")
+        guesses.append(f"{listed} beside the impedance: signals, not responses, and left out")
         return [m for m, signal in zip(made, signals, strict=True) if not signal]
     ends = signals if all(signals) else ends
     forces = [bool(_FORCE.fullmatch(m.label)) and "/" not in m.columns[1].meaning.unit for m in made]
@@ -945,11 +945,11 @@ def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, 
     axis = next((i for i, c in enumerate(columns) if c.meaning.kind == "frequency"), int(is_indexed))
     if re.search(r"\b(?:time|zeit|temps|tiempo|date|datum)\b|^t(?:\b|_)", columns[axis].name, re.I):
         timed = option_in_time([c.numbers for c in columns[axis:]], axis)
-        return f"'{columns[axis].name[:30]}' is no frequency: {timed or HINT}"
+        return f"'{columns[axis].name[:30]}' is not a frequency: {timed or HINT}"
     if columns[axis].meaning.kind not in ("", "frequency"):
         return WITHOUT_AXIS
     if _NO_WORD.search(columns[axis].name):
-        return f"'{columns[axis].name[:30]}' is no frequency: write frequencies in Hz or rad/s instead"
+        return f"'{columns[axis].name[:30]}' is not a frequency: write frequencies in Hz or rad/s instead"
     steps = np.sign(np.diff(columns[axis].numbers.real))
     most = max(np.sum(steps > 0), np.sum(steps < 0))
     is_counter = not steps.all() and np.mean(np.diff(columns[axis].numbers) == 1) > MOST_ALIKE
@@ -987,7 +987,7 @@ def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, 
         return f"say what the columns are: {', or '.join(both if is_held else both[::-1])}"
     sizes = [i for i in open_ones if columns[i].meaning.kind in ("magnitude", "power", "")]
     if not sizes:
-        return "a phase alone is no response: save the magnitude too" if open_ones else HINT
+        return "a phase alone is not a response: save the magnitude too" if open_ones else HINT
     i = next((i for i in sizes if columns[i].meaning.kind), sizes[0])
     options = [option((word, i)) for word in ("mag", "mag_db", "psd") if _may_be(columns[i], word)]
     alone = f"{' or '.join(options)} reads the magnitude alone, and minimum phase is assumed"

@@ -233,7 +233,7 @@ def _responses(
     named = next((i for i, part in enumerate(parts) if part[1] is not None), 0)
     if named and not asked:
         lines = f"{blocks[0].lines[0] + 1} to {blocks[named - 1].lines[-1] + 1}"
-        guesses.append(f"lines {lines} hold a table without a frequency and are skipped")
+        guesses.append(f"lines {lines} contain a table without a frequency and are skipped")
         blocks, parts = blocks[named:], parts[named:]
     for i in range(1, len(parts)):  # a table below another one of the same shape has its names
         (above, line), (own, own_line) = parts[0], parts[i]

@@ -84,13 +84,13 @@ def read_measurement(
     Returns
     -------
     tuple of MeasuredResponse
-        Their ``guesses`` say what was guessed.
+        Their ``guesses`` list what was assumed.
 
     Raises
     ------
     UsageError
         SF901 when there is no such regular file; SF902 when a library for its format is not installed, or
-        columns are asked for that do not exist.
+        requested columns do not exist.
     DataError
         SF601 to SF607: what is wrong with it, with line and column if possible.
 
@@ -221,7 +221,7 @@ def prepared(
             chosen = replace(chosen, averages=averages)
         if window == "exponential" and not chosen.is_record:
             hint = "say its time constant: --window exponential:SECONDS"
-            raise UsageError(Diagnostic("SF902", f"'{response.name}' is no record in time", None, hint))
+            raise UsageError(Diagnostic("SF902", f"'{response.name}' is not a record in time", None, hint))
         if window is not None and not chosen.is_record:
             chosen = replace(chosen, window=window_of(window))
         if chosen.is_record and chosen.coherence is not None and not chosen.averages:

@@ -144,7 +144,7 @@ def _signal(name: str, data: bytes) -> InputSignal:
     if problems:
         raise DataError(*problems)
     if len(times) < 2:  # noqa: PLR2004 (a line has two ends)
-        raise DataError(Diagnostic("SF605", f"'{name}' holds fewer than two samples", None, HINT))
+        raise DataError(Diagnostic("SF605", f"'{name}' contains fewer than two samples", None, HINT))
     if max(time.denominator for time in times) > MOST_DIGITS:  # binary numbers written to the end
         times = _decimal_times(times)
     return InputSignal(tuple(times), tuple(values), tuple(guesses))

@@ -50,7 +50,7 @@ class MeasuredResponse:
     notes : tuple of str
         How the file describes itself.
     guesses : tuple of str
-        What was assumed when the file was read, because it does not say so.
+        What was assumed when the file was read, because it does not state it.
     is_record : bool
         True when it was estimated from a record in time.
     is_magnitude : bool
@@ -288,7 +288,7 @@ def _ordered(
         wrong = ~np.isfinite(frequency[lines]) | ~np.isfinite(values[lines]) | (values[lines] == 0)
     if coherence is not None:
         wrong |= np.isnan(coherence[lines])
-    lines = without(wrong, "what contains no number, or zero")
+    lines = without(wrong, "lines without a number, or with zero")
     if coherence is not None:
         lines = without(coherence[lines] > 1, "a coherence above 1")
     steps = np.diff(frequency[lines])

@@ -276,7 +276,7 @@ def _numbers(
     if not are_few(wrong):
         place = table.line(lines[int(np.argmax(wrong))])
         hint = "a record in time has a number in every column; --columns t,-,u,y leaves columns out"
-        raise DataError(Diagnostic("SF603", "a line contains something else than numbers", place, hint))
+        raise DataError(Diagnostic("SF603", "a line contains something other than numbers", place, hint))
     if left := [i for i in sparse if i not in unused]:
         many = ", ".join(str(i + 1) for i in left[:12])
         guesses.append(f"columns in which most cells contain no number are left out: {many}")
@@ -284,7 +284,7 @@ def _numbers(
         read = [[x if isinstance(x, float) else np.nan for x in row] for row in read]
     if wrong.any():
         listed = ", ".join(str(lines[i] + 1) for i in np.flatnonzero(wrong)[:6].tolist())
-        guesses.append(f"left out what contains no number: line {listed}")
+        guesses.append(f"left out lines without a number: line {listed}")
     good = [row for row, is_wrong in zip(read, wrong.tolist(), strict=True) if not is_wrong]
     return list(np.array(good, float).T), [i for i, w in zip(lines, wrong.tolist(), strict=True) if not w]
 
@@ -344,7 +344,7 @@ def _asked(
         times = _seconds(times, guesses) if words[at] == "t" else times
         step, kept = _even(times, *place, guesses)
     if not (isinstance(step, float) and 0 < step < np.inf):
-        message = f"--columns: '{interval[:40]}' is no sampling time in seconds"
+        message = f"--columns: '{interval[:40]}' is not a sampling time in seconds"
         raise UsageError(Diagnostic("SF902", message, None, "such as u,y,dt=0.01"))
     made: dict[str, list[tuple[str, Real]]] = {"u": [], "y": []}
     for i, word in enumerate(words):
@@ -355,7 +355,7 @@ def _asked(
             raise UsageError(Diagnostic("SF902", message, None, "t (or t_ms, t_us), u, y, -, dt=0.01"))
         values = _resampled(times, channels[i][1], step) if kept else channels[i][1]
         if values.size < FEWEST_SAMPLES or not np.isfinite(values).all():
-            message = f"column {i + 1} has not {FEWEST_SAMPLES} finite numbers, or holds something else"
+            message = f"column {i + 1} has not {FEWEST_SAMPLES} finite numbers, or contains something else"
             raise DataError(Diagnostic("SF603", message, None, "choose another column, or leave lines out"))
         made[word.rstrip("0123456789")].append((_plain(channels[i][0], i), values))
     if len(made["u"]) > 1 or not made["y"]:

@@ -109,7 +109,7 @@ def _row(written: str, ports: int, place: Span) -> list[float]:
             return [float(cell) for cell in written.split()]
     except ValueError:
         pass
-    message = f"this line of a {ports}-port holds what is not a number"
+    message = f"this line of a {ports}-port contains something other than a number"
     raise DataError(Diagnostic("SF603", message, place, _OPTIONS))
 
 

@@ -77,7 +77,7 @@ def read_universal_file(name: str, data: bytes, stem: str, asked: str = "") -> t
         hint = "a line with -1 in columns 5 and 6 begins and ends each dataset"
         raise DataError(Diagnostic("SF601", message, None, hint))
     if len(places) > MAX_RESPONSES:
-        raise DataError(Diagnostic("SF607", f"'{name}' holds more than {MAX_RESPONSES} datasets 58"))
+        raise DataError(Diagnostic("SF607", f"'{name}' contains more than {MAX_RESPONSES} datasets 58"))
     pyuff = installed("pyuff")
     sets = _read(pyuff, name, data, places)
     coherences = {_ends(s): s for s in sets if s.get("func_type") in (COHERENCE, MULTIPLE_COHERENCE)}

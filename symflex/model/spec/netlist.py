@@ -265,7 +265,7 @@ class _Netlist:
             self._controlled(line, scope, letter)
         else:
             raise line.refuse(
-                f"'{word[:40]}' is no component of SPICE",
+                f"'{word[:40]}' is not a SPICE component",
                 "a name begins with R, L, C, V, I, E, F, G, H, K or X",
             )
 
@@ -309,7 +309,7 @@ class _Netlist:
             if re.fullmatch(r"[A-Za-z_]\w*", text):
                 return self._expression(line, text, scope)
             raise line.refuse(
-                f"'{text[:60]}' is no value", "a number with a suffix as 4.7k or 10meg, or {an expression}"
+                f"'{text[:60]}' is not a value", "a number with a suffix as 4.7k or 10meg, or {an expression}"
             )
         return _quantity(match[1], (match[2] or "").lower(), unit)
 
@@ -317,7 +317,7 @@ class _Netlist:
         text = POWER.sub(r"(\1^\2)", text.replace("**", "^").strip())
         if not EXPRESSION.fullmatch(text) or not text:
             hint = "expressions have numbers, parameters, + - * / ^ and functions of one argument"
-            raise line.refuse(f"'{text[:60]}' is no expression that can be read", hint)
+            raise line.refuse(f"'{text[:60]}' is not an expression that can be read", hint)
         text = IN_EXPRESSION.sub(lambda m: m[1] + SUFFIXES.get((m[2] or "").lower(), ""), text)
         text = re.sub(r"\bln\s*\(", "log(", text, flags=re.I)
 
@@ -542,7 +542,7 @@ class _Netlist:
                 self.sensed.setdefault("", line.words[2])
         elif word not in IGNORED:
             hint = nearest(word, [*IGNORED, "param", "ac", "print", "tf", "include", "subckt"])
-            raise line.refuse(f"'.{word[:40]}' is no directive that is read", hint)
+            raise line.refuse(f"'.{word[:40]}' is not a directive that is read", hint)
 
     def _output(self, line: Card, word: str, scope: _Scope) -> None:
         word = re.sub(r"^([VI])_(\w+)$", r"\1(\2)", word)  # as SLiCAP names them

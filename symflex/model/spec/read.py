@@ -39,7 +39,7 @@ def read(path: str | Path) -> Source:
     data = read_file(name, MAX_BYTES)
     if name.lower().endswith(DATA) or (_NUMBERS.search(data) and b"symflex" not in data):
         raise SpecError(
-            Diagnostic("SF901", f"'{name}' is measured data, no specification: symflex fit {name}")
+            Diagnostic("SF901", f"'{name}' is measured data, not a specification: symflex fit {name}")
         )
     if len(data) > MAX_BYTES:
         message = f"'{name}' is larger than {MAX_BYTES} bytes"

@@ -281,7 +281,7 @@ def together(models: Models, of: tuple[str, ...]) -> Finding:
     """Tell whether outputs move with one where the input acts, from the lowest frequency examined."""
     colocations = [(_colocation(models, name), models[model_of(name)]) for name in of]
     lines = [
-        f"In {facts.stem}, {one.tf} and {one.reference} are together {_up_to(one)}; "
+        f"In {facts.stem}, {one.tf} and {one.reference} move together {_up_to(one)}; "
         f"its first mode is at {_first_mode(facts.of(one.tf)):.4g} Hz."
         for one, facts in colocations
     ]
@@ -298,7 +298,7 @@ def together_farthest(models: Models, of: tuple[str, ...]) -> Finding:
         colocation = _colocation(models, name)
         end = (colocation.bandwidth_hz or colocation.examined_hz) if colocation.is_together else 0.0
         shares.append(end / _first_mode(models[model_of(name)].of(colocation.tf)))
-        moves = f"In {model_of(name)}, outputs are together {_up_to(colocation)}"
+        moves = f"In {model_of(name)}, outputs move together {_up_to(colocation)}"
         lines.append(f"{moves}, {shares[-1]:.2g} times its first mode.")
     return judged(all(shares[0] > share for share in shares[1:]), "\n".join(lines))
 

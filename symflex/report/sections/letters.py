@@ -1,4 +1,4 @@
-"""What a person reads off the formulas of a model, in letters: roots, limits, groups without dimension."""
+"""What a person reads off the formulas of a model, in letters: roots, limits, dimensionless groups."""
 
 from __future__ import annotations
 
@@ -78,14 +78,14 @@ def _limits(tf: AnyTransferFunction, labels: Mapping[str, str]) -> Iterator[Bloc
 
 
 def _groups(tf: AnyTransferFunction, labels: Mapping[str, str]) -> Iterator[Block]:
-    """Yield the function of groups without dimension, and the groups."""
+    """Yield the function in dimensionless groups, and the groups."""
     found = dimensionless_of(tf)
     if not 0 < len(found.rows) <= MOST_ROWS:
         return
     (head, *rows), over = found.rows, labelled(Name("scale"), SCALE)
     scaled = Mathematics(f"<mi>G</mi><mo>/</mo>{over.mathml}", f"G/{over.latex}")
     where = [(row.name.removeprefix("where "), row.expression) for row in (*rows, *found.where)]
-    yield text("With groups without dimension, and G for ", ratio(tf), ":")
+    yield text("With dimensionless groups, and G for ", ratio(tf), ":")
     yield equations([(scaled, head.expression)], {**labels, **SCALE}, f"{tf.name} with groups", where)
     runs = list[Run]()
     for row in rows:

@@ -123,7 +123,7 @@ class _NetworkReading:
         self.delivered: dict[Variable, Variable | None] = {}  # motions by forces and torques of members
         for continuum in equations.continua:
             if not continuum.final:
-                _refuse(f"'{continuum.name}' is no element between two nodes")
+                _refuse(f"'{continuum.name}' is not an element between two nodes")
             half = len(continuum.initial) // 2
             for state in (continuum.initial, [v for v, _ in continuum.final]):
                 for motion, force in zip(state[:half], state[half:], strict=True):

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from symflex import pipeline
-from symflex.files import examples as room
+from symflex.files import examples as files
 from symflex.files.examples import FOLDERS, examples
 from tests.house.repository import specifications
 from tests.unit.cli.commands import WORKED
@@ -106,7 +106,7 @@ def test_an_example_that_somebody_broke_is_an_error_with_its_place(shell, monkey
     broken = shell.folder / "derivations" / "frames" / "broken.toml"
     broken.parent.mkdir(parents=True)
     broken.write_text("symflex = \n")
-    monkeypatch.setattr(room, "_PACKAGE", shell.folder)
+    monkeypatch.setattr(files, "_PACKAGE", shell.folder)
     done = shell("examples", "copy", "broken", "there")
     assert (done.code, f"{broken}:1:" in done.err) == (3, True)
 

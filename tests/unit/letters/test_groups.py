@@ -159,7 +159,7 @@ def test_scale_times_the_function_in_groups_is_the_function() -> None:
 @pytest.mark.parametrize(
     ("prefer", "wanted"),
     [
-        ('["k/m"]', "prefer of [analysis] is no group"),
+        ('["k/m"]', "prefer of [analysis] is not a group"),
         ('["b^2/(k*m)"]', "zeta = b/(2*sqrt(m*k))"),
         ('["m*k/b^2"]', "mu = m*k/b^2"),
     ],

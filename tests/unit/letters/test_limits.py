@@ -193,7 +193,7 @@ y = "w(l)"
     ("text", "reason"),
     [
         (LOSS, "loss factors hold on s = j*omega alone"),
-        (TIMOSHENKO, "s -> infinity: no term in letters, its waves are no roots of one term"),
+        (TIMOSHENKO, "s -> infinity: no term in letters, its waves are not roots of one term"),
         (
             SIGNALS + 'y = "u*((tau - 20*T)*s + 1)/(T*tau*s^2)"\n[outputs]\nout = "y"',
             "(tau - 20*T)/(T*tau*s) is zero for the",

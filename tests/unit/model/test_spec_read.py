@@ -112,7 +112,7 @@ def test_measured_data_are_named_as_data_for_fit_in_one_line(path: Path) -> None
         path.with_name(name).write_bytes(data)
         problem = refusal(path.with_name(name))
         assert problem.message.endswith(
-            f"is measured data, no specification: symflex fit {path.with_name(name)}"
+            f"is measured data, not a specification: symflex fit {path.with_name(name)}"
         )
         assert problem.hint is None
     path.write_text("symflex = 1\nx = [\n1.0, 2.0,\n3.0, 4.0]\n")

@@ -46,7 +46,7 @@ GUESSES = {
     "power_itself.csv": "'Power ratio (10log10 dB)' is the response itself, which fits the phase",
     "power.csv": "is the square of the magnitude, which fits the phase",
     "shift.dat": "the frequency is 'Frequency Shift (Hz)' plus 'Center Frequency (Hz)'",
-    "potentiostat.par": "'E', 'I' beside the impedance: signals, no responses, and left out",
+    "potentiostat.par": "'E', 'I' beside the impedance: signals, not responses, and left out",
     "many.mat": "the values are h",
     "oros.csv": "decimals are written with a comma",
     "lag.csv": "'Phase lag (deg)' is the phase times -1",

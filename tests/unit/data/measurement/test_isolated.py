@@ -149,7 +149,7 @@ def test_whatever_a_library_does_is_one_error(tmp_path, monkeypatch):
     for does, said in (
         ("import os; os.kill(os.getpid(), 11)", "'a' is not a .tdms file: nptdms fails on it"),
         ("raise KeyError('x')", "'a' is not a .tdms file: KeyError: 'x'"),
-        ("[0] * 10**10", "holds more than 50000000 bytes"),
+        ("[0] * 10**10", "contains more than 50000000 bytes"),
     ):
         (tmp_path / "nptdms.py").write_text(f"class TdmsFile:\n  def read(f):\n    {does}\n")
         with pytest.raises(DataError, match=said):

@@ -70,9 +70,9 @@ def test_a_line_at_zero_hertz_is_left_out(write):
 
 
 LEFT_OUT = {
-    "no number": ("7,nan,4", "left out what contains no number, or zero: line 8"),
-    "overload": ("7,OVLD,OVLD", "left out what contains no number, or zero: line 8"),
-    "zero": ("7,0,0", "left out what contains no number, or zero: line 8"),
+    "no number": ("7,nan,4", "left out lines without a number, or with zero: line 8"),
+    "overload": ("7,OVLD,OVLD", "left out lines without a number, or with zero: line 8"),
+    "zero": ("7,0,0", "left out lines without a number, or with zero: line 8"),
     "empty": ("7,,", "line 8 ('7,,') is not a row of numbers and is skipped"),
     "below zero": ("-7,2,3", "left out negative frequencies: line 8"),
     "twice": ("6,6,-6", "left out what repeats the line before it: line 8"),

@@ -125,7 +125,7 @@ def test_the_damping_of_an_exponential_window_is_taken_out_of_a_fit(tmp_path):
     (response,) = prepared(read_measurement(path), window="exponential:0.4")
     made.write_bytes(measurement_bytes(response, made))
     assert read_measurement(made)[0].window == "exponential:0.4"
-    with pytest.raises(UsageError, match="is no record in time"):
+    with pytest.raises(UsageError, match="is not a record in time"):
         prepared(read_measurement(path), window="exponential")
 
 
@@ -302,7 +302,7 @@ def test_hints_followed_to_the_letter_read_the_record(tmp_path):
         assert record.step_s == pytest.approx(STEP, rel=1e-3), name
         assert record.input is source is None or np.allclose(record.input[1], source, atol=1e-3), name
         assert len(record.outputs) == 1 and np.allclose(record.outputs[0][1], y, atol=1e-3), name
-    with pytest.raises(UsageError, match="'dt=SECONDS' is no sampling time"):
+    with pytest.raises(UsageError, match="'dt=SECONDS' is not a sampling time"):
         read_record("a.csv", cases["named.csv"][0], "a", "u,y,dt=SECONDS")
 
 
@@ -365,7 +365,7 @@ def test_channels_that_are_no_outputs_are_left_out_and_said():
         assert np.allclose(record.input[1], a), head
         assert said in " ".join(record.guesses), head
     rows = "\n".join(f"{x},{1 if i % 4 else ''},{y}" for i, (x, y) in enumerate(zip(t, c, strict=True)))
-    with pytest.raises(DataError, match="something else than numbers"):
+    with pytest.raises(DataError, match="something other than numbers"):
         read_record("a.csv", f"t,a,b\n{rows}".encode(), "a")
     assert read_record("a.csv", f"t,a,b\n{rows}".encode(), "a", "t,-,y").outputs[0][0] == "b"
 
