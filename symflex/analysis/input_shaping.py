@@ -83,7 +83,7 @@ class InputShaper(Printed):
         return tuple(float(a.mid()) for _, a in self.impulses)
 
     def residual(self, pole: acb) -> arb:
-        """Return the vibration of a mode left by the impulses over that of one, for all poles in the ball."""
+        """Return the residual vibration of a mode relative to one impulse, for all poles in the ball."""
         with precision(self.bits):
             total = sum((a * (-pole * t).exp() for t, a in self.impulses), acb(0))
             return abs(total) * (pole.real * self.impulses[-1][0]).exp()

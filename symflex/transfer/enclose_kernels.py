@@ -52,7 +52,7 @@ class KernelValues:
     ) -> dict[str, Value]:
         """Return the values of all generators at ``s`` [rad/s], and characteristic roots without names.
 
-        Where the roots of a dispersion can be told apart, they stand for its fundamental functions. It is a
+        Where the roots of a dispersion can be separated, they stand for its fundamental functions. It is a
         point, a ball, or a series about either; wavenumbers take the same branch as ``near``, values at a
         ball that contains ``s``. Their square roots are by default those of :func:`square_root`.
         """

@@ -50,7 +50,7 @@ LEXICON = {
     r"\bhalf planes?\b": ("half-plane", {}),
     rf"\b{HOLDERS} (?:may |then |also )?holds?\b(?! for| at| if| where| with)|\bholds? no\b": ("contain", {}),
     r"\bgain's own value\b": ("nominal gain", {}),
-    r"\brooms? (?:of the program|imports?|offers?)\b|\bRooms\b|_room\b|\bas room\b": ("package, layer", {}),
+    r"\brooms? (?:of the program|imports?|offers?)\b|\bRooms\b|\bas \w*room\b": ("package, layer", {}),
     r"\bat (?:and|or) below (?:its|the|a) folder\b|\b(?:specifications|files|all) in it and below\b": (
         "in that folder and its subfolders",
         {},

@@ -62,7 +62,7 @@ from symflex.transfer.enclose_kernels import KernelValues
 FINER = (1, 2, 4)  # times the requested digits, to which the determinants of a network are known
 FIRST_BITS = 192
 LAST_BITS = 12288  # precision of the first attempt, and where doubling it ends: six times
-DETECTION_BITS = 768  # precision at which a coefficient counts as zero if its ball holds zero
+DETECTION_BITS = 768  # precision at which a coefficient counts as zero if its ball contains zero
 DOUBLE_DIGITS = 17  # digits that tell a double from its neighbours
 SLACK = 16  # terms that roots of vanishing coefficients may cost
 LONGEST = 160  # terms of the longest series tried

@@ -285,7 +285,7 @@ class RootBranch:
     root: acb  # holds one root of it [rad/s]
 
     def refined(self, bits: int) -> RootBranch | None:
-        """Return the branch with the root to about so many bits (Moore 1966), ``None`` if it holds none."""
+        """Return the branch with the root to about so many bits (Moore 1966), ``None`` if it has none."""
         with precision(bits):
             root = self.root
             for _ in range(bits.bit_length()):

@@ -179,7 +179,7 @@ class KernelFunction:
             return self._factors(s, bits)
 
     def enclosed_about(self, ball: acb, centre: acb, bits: int) -> list[FactorBall]:
-        """Return balls around values at a point, and derivatives on a ball that holds it: one branch."""
+        """Return balls around values at a point, and derivatives on a ball that contains it: one branch."""
         self._spend(bits)
         with precision(bits):
             values = self._evaluator(bits)
@@ -447,7 +447,7 @@ def _spectral_size(coefficients: Sequence[acb]) -> acb:
 
 
 def split_off_kernels(value: Factored, table: KernelTable) -> tuple[Factored, Factored]:
-    """Return the factors that hold s alone, and the product of those that hold wavenumbers or kernels."""
+    """Return the factors with s alone, and the product of those that contain wavenumbers or kernels."""
     ring = value.ring
     varying = [0] + [
         ring.index[name]
