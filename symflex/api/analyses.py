@@ -6,7 +6,7 @@ from functools import partial
 from math import inf
 from typing import TYPE_CHECKING
 
-from symflex.analysis import response as response_room
+from symflex.analysis import response as response_layer
 from symflex.analysis.time_response import StepInfo
 from symflex.api.face import face_of
 from symflex.api.mode_shape import ModeShape
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from symflex import roots as roots_room
+    from symflex import roots as roots_layer
     from symflex.analysis.explanation import ZeroExplanation
     from symflex.analysis.input_shaping import InputShaper
     from symflex.analysis.rational import RationalApproximation
@@ -53,7 +53,7 @@ class Analyses(Plotted):
 
     def frequency_response(self, omega: ArrayLike) -> FrequencyResponse:
         """Return the response at real angular frequencies [rad/s]."""
-        return face_of(FrequencyResponse, response_room.respond(self.bound, omega))
+        return face_of(FrequencyResponse, response_layer.respond(self.bound, omega))
 
     def peak(self, digits: int = 12, band: Ends | None = None) -> Peak:
         """Return the largest magnitude over all frequencies, or in a band [Hz]; see :meth:`Model.peak`."""
@@ -238,7 +238,7 @@ class Analyses(Plotted):
         located = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
         return self._table(located, located.zeros)
 
-    def _table(self, located: PoleZeroMap, listed: Sequence[roots_room.Root]) -> RootTable:
+    def _table(self, located: PoleZeroMap, listed: Sequence[roots_layer.Root]) -> RootTable:
         letters = partial(roots_in_letters, self.bound.source, self.bound, located)
         return RootTable(Root(root, letters, symbols_of(self.bound.source.model)) for root in listed)
 
@@ -246,7 +246,7 @@ class Analyses(Plotted):
         """Return the map if the budget suffices: a tuple of roots could not say that it did not."""
         return face_of(PoleZeroMap, self._map(given, budget).complete())
 
-    def _map(self, given: RootsOptions, budget: float | None) -> roots_room.PoleZeroMap:
+    def _map(self, given: RootsOptions, budget: float | None) -> roots_layer.PoleZeroMap:
         digits = checked_digits(15 if given.digits is None else given.digits)
         with budget_of(budget).besides().entered():
             return locate(self.bound, region_of(given), digits)

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
-    from symflex import model as model_room
-    from symflex.analysis import modes as modes_room
+    from symflex import model as model_layer
+    from symflex.analysis import modes as modes_layer
     from symflex.figures import AxesGiven
 
 END_TOLERANCE = 1e-12
@@ -52,8 +52,8 @@ class ModeShape:
     (('x', 'bar.f_a', 'bar.f'), array([0.      , 0.707107, 1.      ]))
     """
 
-    enclosed: modes_room.EnclosedModeShape
-    model: model_room.Model = field(repr=False)
+    enclosed: modes_layer.EnclosedModeShape
+    model: model_layer.Model = field(repr=False)
 
     @property
     def pole(self) -> Root:

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from symflex import model as model_room
+    from symflex import model as model_layer
     from symflex.api.live import LivePage
     from symflex.api.sweep import Sweep
     from symflex.codegen.export import Exporter
@@ -90,7 +90,7 @@ class Model:
     X/F = 1/(m*s^2)
     """
 
-    resolved: model_room.Model
+    resolved: model_layer.Model
     _source: Source = field(compare=False, repr=False)  # its text
     _values: Mapping[str, Setting] = field(compare=False, repr=False)  # given in place of those of the text
 
@@ -223,7 +223,7 @@ class Model:
         return self.resolved.title
 
     @property
-    def parameters(self) -> tuple[model_room.ModelParameter, ...]:
+    def parameters(self) -> tuple[model_layer.ModelParameter, ...]:
         """The parameters in declared order, with exact values in SI units."""
         return self.resolved.parameters
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from symflex.analysis import response as response_room
+from symflex.analysis import response as response_layer
 from symflex.analysis.time_response import EnclosedResponse
 from symflex.api.face import face_of
 from symflex.data import measurement
@@ -24,7 +24,7 @@ LARGEST_DRAWING = 4000
 
 
 @dataclass(frozen=True, eq=False)
-class FrequencyResponse(response_room.SampledResponse):
+class FrequencyResponse(response_layer.SampledResponse):
     """Values on the imaginary axis; in a notebook, a Bode plot.
 
     See :class:`symflex.analysis.response.SampledResponse`.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 import mpmath
 
-from symflex import roots as roots_room
+from symflex import roots as roots_layer
 from symflex.balls import precision, to_complex_mpmath, to_mpmath
 from symflex.roots import HiddenRoot, decimals, figure
 from symflex.roots import Root as CertifiedRoot
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     import sympy
     from flint import acb
 
-    from symflex.analysis import rational as rational_room
-    from symflex.analysis import sensitivity as sensitivity_room
+    from symflex.analysis import rational as rational_layer
+    from symflex.analysis import sensitivity as sensitivity_layer
     from symflex.letters.roots import FactorInLetters, RootFormula
     from symflex.roots.root import RootDecimals
 
@@ -52,7 +52,7 @@ class Root:
         The enclosure and what was proved about it.
     """
 
-    certified_root: roots_room.Root
+    certified_root: roots_layer.Root
     _letters: Callable[[], tuple[FactorInLetters, ...]] | None = field(
         default=None, repr=False, compare=False
     )
@@ -206,7 +206,7 @@ def plain_mode(mode: Mode) -> int | CertifiedRoot:
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class PoleZeroMap(roots_room.PoleZeroMap):
+class PoleZeroMap(roots_layer.PoleZeroMap):
     """Poles, zeros and hidden modes; in a notebook, a table. See :class:`symflex.roots.PoleZeroMap`."""
 
     def _repr_html_(self) -> str:
@@ -225,7 +225,7 @@ class Residue:
         The enclosures.
     """
 
-    principal: rational_room.PrincipalPart
+    principal: rational_layer.PrincipalPart
 
     @property
     def pole(self) -> Root:
@@ -283,7 +283,7 @@ class Sensitivity:
         The enclosures.
     """
 
-    moved: sensitivity_room.RootDerivative
+    moved: sensitivity_layer.RootDerivative
 
     @property
     def kind(self) -> str:

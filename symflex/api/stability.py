@@ -16,7 +16,7 @@ from symflex.roots.pole_zero_map import StabilityVerdict
 from symflex.roots.root import degrees, hertz
 
 if TYPE_CHECKING:
-    from symflex import loops as stability_room
+    from symflex import loops as stability_layer
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class Stability(Printed):
         The enclosures and counts.
     """
 
-    proved: stability_room.StabilityMap
+    proved: stability_layer.StabilityMap
 
     @property
     def certified(self) -> bool:

@@ -9,7 +9,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
-from symflex import state_space as state_space_room
+from symflex import state_space as state_space_layer
 from symflex.codegen.state_space import StateEquations
 from symflex.model import ExactValue, Model
 from symflex.options import duration, finite
@@ -60,13 +60,13 @@ class StateSpace:
            [-9.,  0.]])
     """
 
-    exact: state_space_room.StateSpace
+    exact: state_space_layer.StateSpace
 
     @staticmethod
     def of(model: Model, pairs: Sequence[tuple[str, str]], *, minimal: bool) -> StateSpace:
         """Return a realisation with the outputs and inputs of the given pairs."""
-        realised = state_space_room.realise(model, pairs)
-        return StateSpace(state_space_room.minimal(realised) if minimal else realised)
+        realised = state_space_layer.realise(model, pairs)
+        return StateSpace(state_space_layer.minimal(realised) if minimal else realised)
 
     @property
     def states(self) -> tuple[str, ...]:

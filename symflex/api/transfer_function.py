@@ -10,7 +10,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from symflex import pipeline
-from symflex import transfer as transfer_room
+from symflex import transfer as transfer_layer
 from symflex.api.analyses import Analyses
 from symflex.api.face import face_of
 from symflex.api.response import TimeResponse
@@ -56,7 +56,7 @@ class Form:
         Its arrangement.
     """
 
-    source: transfer_room.AnyTransferFunction
+    source: transfer_layer.AnyTransferFunction
     printed: PrintedForm
 
     @property
@@ -130,7 +130,7 @@ class Form:
 class _Derived:
     """What a transfer function tells of itself, however it was derived."""
 
-    exact: transfer_room.AnyTransferFunction
+    exact: transfer_layer.AnyTransferFunction
 
     @property
     def name(self) -> str:
@@ -196,7 +196,7 @@ class _Derived:
 class TransferFunction(_Derived):
     """An exact transfer function; its parts are SymPy expressions in the shortest form."""
 
-    exact: transfer_room.TransferFunction
+    exact: transfer_layer.TransferFunction
 
     @property
     def is_distributed(self) -> bool:
@@ -374,7 +374,7 @@ class NestedTransferFunction(_Derived):
     :func:`symflex.transfer.derive_nested`.
     """
 
-    exact: transfer_room.NestedTransferFunction
+    exact: transfer_layer.NestedTransferFunction
 
     @property
     def size(self) -> int:
@@ -417,7 +417,7 @@ class BoundTransferFunction(Toolboxes, Analyses):
     finds those in a region.
     """
 
-    bound: transfer_room.BoundTransferFunction
+    bound: transfer_layer.BoundTransferFunction
 
     @property
     def name(self) -> str:
@@ -430,7 +430,7 @@ class BoundTransferFunction(Toolboxes, Analyses):
         return not self.bound.is_rational
 
     @property
-    def _expanded(self) -> transfer_room.BoundTransferFunction:
+    def _expanded(self) -> transfer_layer.BoundTransferFunction:
         return self.bound
 
     def __reduce__(self) -> tuple[object, ...]:
@@ -519,7 +519,7 @@ class BoundNestedTransferFunction(BoundNested, Toolboxes, Analyses):
         return self
 
     @cached_property
-    def _expanded(self) -> transfer_room.BoundTransferFunction:
+    def _expanded(self) -> transfer_layer.BoundTransferFunction:
         """Derived again with the numbers in place, so that its polynomials contain no name but s.
 
         SF235 for beams, rods and fields, whose expanded form would hold kernels.

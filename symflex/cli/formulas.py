@@ -386,11 +386,11 @@ def audit(spec: Specification, given: AuditOptions) -> int:
     Each formula of [published] is proved equal, or its differences are shown with the structural laws that it
     violates. A difference is a result, so the exit code is 0; with --strict it is 4.
     """
-    from symflex import audit as audit_room
+    from symflex import audit as audit_layer
     from symflex.audit.text import audit_document, audit_text
 
     model = spec.load()
-    audits = audit_room.audit(model, given.tfs)
+    audits = audit_layer.audit(model, given.tfs)
     if not model.published:
         note('nothing is published in this specification: [published."OUT/IN"] holds a printed formula')
     if given.as_json:

@@ -9,7 +9,7 @@ from math import pi
 
 from symflex.budget import spend
 from symflex.errors import BudgetError, UncertifiedError
-from symflex.loops import loop as loop_room
+from symflex.loops import loop as loop_layer
 from symflex.loops.colocation import DynamicColocation, dynamic_colocation
 from symflex.loops.find import find_stable_gains
 from symflex.loops.locus import is_straight
@@ -83,8 +83,8 @@ def characteristic_loop(
         if network is not None:
             return network
         message = f"'{gain}' occurs in several places of a network that is too large to be written out"
-        raise loop_room.no_loop("SF803", message, parameter) from error
-    return loop_room.characteristic_loop(tf, parameter, given)
+        raise loop_layer.no_loop("SF803", message, parameter) from error
+    return loop_layer.characteristic_loop(tf, parameter, given)
 
 
 def _seeing(model: Model, pairs: Sequence[tuple[str, str]], gain: ModelParameter) -> TransferFunction:
@@ -92,7 +92,7 @@ def _seeing(model: Model, pairs: Sequence[tuple[str, str]], gain: ModelParameter
     derived: list[TransferFunction] = []
     for pair in pairs:
         derived += derive_all(model, [pair])
-        moving = loop_room.gain_generators(derived[-1], gain.name)
+        moving = loop_layer.gain_generators(derived[-1], gain.name)
         if any(derived[-1].den.depends_on(name) for name in moving):
             return derived[-1]
     return derived[0]

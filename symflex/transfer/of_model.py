@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import inf
 
-from symflex import equations as equations_room
+from symflex import equations as equations_layer
 from symflex.algebra import LAPLACE, KernelTable, terms_of
 from symflex.budget import spend, uncollected
 from symflex.equations import Equations
@@ -67,7 +67,7 @@ def pick_pairs(model: Model, names: Sequence[str]) -> tuple[tuple[str, str], ...
 
 def assemble(model: Model) -> Equations:
     """Return the model's equations ``A(s) x + B u = 0``; nested models are derived first."""
-    return equations_room.assemble(model, nested_transfer)
+    return equations_layer.assemble(model, nested_transfer)
 
 
 def assemble_for_checks(model: Model) -> Equations:
@@ -130,12 +130,12 @@ def derive_nameless(
     model: Model, pairs: Sequence[tuple[str, str]], most: Terms | None = None
 ) -> tuple[TransferFunction, ...]:
     """Return transfer functions with fundamental functions in place of kernels, which are entire at s = 0."""
-    return derive_from(equations_room.assemble(model, nested_transfer, is_nameless=True), pairs, most)
+    return derive_from(equations_layer.assemble(model, nested_transfer, is_nameless=True), pairs, most)
 
 
 def followed_along_x(tf: TransferFunction) -> TransferFunction:
     """Return a function of a model with members that taper, its uniform ones followed along x too."""
-    equations = equations_room.assemble(tf.model, nested_transfer, is_followed=True)
+    equations = equations_layer.assemble(tf.model, nested_transfer, is_followed=True)
     (derived,) = derive_from(equations, [(tf.output.name, tf.input.name)])
     return derived
 
@@ -152,7 +152,7 @@ def assemble_sparse(model: Model) -> Equations:
         raise ModelError(Diagnostic("SF910", message, None, "ask for the expanded representation"))
     is_sparse = not any(block.submodel is not None for block in model.blocks)
     with uncollected():
-        return equations_room.assemble(
+        return equations_layer.assemble(
             model, nested_transfer, is_sparse=is_sparse, is_nameless=model.is_distributed
         )
 

@@ -6,7 +6,7 @@ import symflex
 from symflex import pipeline
 from symflex.drawing import drawing_of
 from symflex.drawing.symbols import TRANSFORMER_SYMBOLS
-from symflex.model import model as model_room
+from symflex.model import model as model_layer
 from tests.house.repository import ROOT
 from tests.unit.drawing.geometry_checks import count, faults, overlaps
 
@@ -264,7 +264,7 @@ def test_nodes_stand_in_the_order_that_the_specification_wants():
 
 
 def test_a_transformer_is_drawn_with_the_symbol_that_the_specification_wants():
-    assert tuple(TRANSFORMER_SYMBOLS) == model_room.TRANSFORMER_SYMBOLS
+    assert tuple(TRANSFORMER_SYMBOLS) == model_layer.TRANSFORMER_SYMBOLS
     chosen = f"{TURNING}[drawing.symbols]\npinion = "
     drawn = {name: item(sound(f'{chosen}"{name}"\n'), "element", "pinion") for name in TRANSFORMER_SYMBOLS}
     assert item(sound(TURNING), "element", "pinion") == drawn["rack"] != drawn["screw"]

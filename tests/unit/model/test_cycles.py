@@ -8,7 +8,7 @@ import sympy
 
 import symflex
 from benchmarks.generated import imported
-from symflex import audit as audit_room
+from symflex import audit as audit_layer
 from symflex import pipeline
 from symflex.codegen.exporters import EXPORTERS
 from symflex.errors import SpecError
@@ -107,7 +107,7 @@ def test_a_published_formula_may_convert_by_itself_or_not():
     for expression in ["f_c/(s + f_c)", "2*pi*f_c/(s + 2*pi*f_c)", "1/(1 + s/w)"]:
         where = '\nwhere = { w = "2*pi*f_c" }'
         model = loaded("f_c*u/(s + f_c)", f'[published."y/u"]\nexpr = "{expression}"{where}')
-        (audit,) = audit_room.audit(model.resolved)
+        (audit,) = audit_layer.audit(model.resolved)
         assert audit.verdict == "equal", expression
 
 
