@@ -255,7 +255,7 @@ class _AboutRest:
                     self.reader.note("SF210", message, call.span, nearest(call.name, FUNCTIONS) or SMOOTH)
         for value in self.rest.values.values():
             for leaf in (n for n in nodes(value) if self.varies(n) or n == Name(LAPLACE)):
-                message = f"'{format_expression(leaf)}' is no parameter; values at rest are constant"
+                message = f"'{format_expression(leaf)}' is not a parameter; values at rest are constant"
                 hint = nearest_name(format_expression(leaf), list(self.constants))
                 self.reader.note("SF210", message, leaf.span or value.span, hint)
 
