@@ -35,7 +35,7 @@ UNCHANGED = 1e-12  # change below which the radius of a ball is all there is
 LOST = 0.5  # displacement from which a root is no longer taken for the same one
 DECIBELS = 1.0  # difference in magnitude that statements are about: 12 %
 BESIDE = 1.05
-"""Ratio of frequencies up to which a part of the band is not told apart from a resonance or from a gap."""
+"""Ratio of frequencies up to which a part of the band is joined to a resonance or to a gap."""
 SHOWN = 6  # number of parts of a band, or of roots, that a sentence lists
 
 

@@ -41,7 +41,7 @@ from symflex.transfer import AnyBoundFunction, AnyTransferFunction
 from symflex.transfer.enclose import enclosure, later
 
 Key = tuple[int, ...]  # powers of q and of every kernel
-MOST_RATIOS: Final = 3  # ratios of parameters that an equation may hold beside q
+MOST_RATIOS: Final = 3  # ratios of parameters that an equation may contain beside q
 BESIDE: Final = arb("1e-6")  # part of q by which the two sides of a root are apart from it
 Q: Final = "q"
 EXACT: Final = {"cos": "all solutions: q = (2*n - 1)*pi/2", "sin": "all solutions: q = n*pi"}
