@@ -28,7 +28,7 @@ def poles_right_of_axis(chi: Characteristic, radius: float, smallest: float = 0.
 
     With ``smallest``, zeros at 0 are passed by a small arc to the right.
     """
-    low = max(smallest, radius * 1e-7)
+    low = max(smallest, radius * 1e-9)
     frequencies = np.concatenate([np.geomspace(low, radius, FIRST_POINTS)])
     upwards = [1j * w for w in frequencies]
     arc = [radius * cmath.exp(1j * angle) for angle in np.linspace(math.pi / 2, -math.pi / 2, FIRST_POINTS)]

@@ -107,8 +107,9 @@ def test_a_figure_of_one_function_is_a_column_wide(tfs):
 
 @pytest.mark.slow
 def test_two_drawings_have_the_same_bytes(tfs):
-    one, other = (drawn("poles_zeros", tfs[:1]) for _ in range(2))
-    assert [f for f in FORMATS if render(one, f) != render(other, f)] == []
+    kinds = {f: "modes" if f == "gif" else "poles_zeros" for f in FORMATS}
+    one, other = ({kind: drawn(kind, tfs[:1]) for kind in kinds.values()} for _ in range(2))
+    assert [f for f, kind in kinds.items() if render(one[kind], f) != render(other[kind], f)] == []
 
 
 @pytest.mark.slow

@@ -299,7 +299,7 @@ PROGRAM = """
 from symflex import pipeline
 from symflex.print.forms import print_form
 from symflex.print.forms.printed import forms_of
-from symflex.expressions import S, format_expression, quotient
+from symflex.expressions import format_expression
 for stem in ("lumped_bending_beam", "sliding_free_beam"):
     for tf in pipeline.derive_all(pipeline.load(f"derivations/eppinger1988/{stem}.toml")):
         for name in (*forms_of(tf), None):
