@@ -136,13 +136,13 @@ def draw_shapes(
             if own:
                 axes.set_ylabel(labels[j])
             left += room
-    if isinstance(figure, ShownFigure):
-        figure.moving = tuple(moving)
     if own:
         return figure
     _label_columns(figure, labels, columns, gaps, (below + (height - above - below) / 2) / height)
     if is_lagging:
         _add_legend(figure, panels, 1 - (LINE_INCHES * len(lines) + 0.03) / height)
+    if isinstance(figure, ShownFigure):
+        figure.moving = (*moving, *((legend, None) for legend in figure.legends))
     write_titles(figure, titles, 0.02, height)
     return figure
 
@@ -280,6 +280,7 @@ def _draw_plan(axes: Axes, panel: Plan, shape: EnclosedModeShape) -> list[Moving
             moving.append((lagging, None))
         style = {"color": COLOURS[0], "zorder": 3, "solid_capstyle": "round"}
         moving.append(_moving_line(axes, place, scale * moved, **style))
+        axes.update_datalim((place - scale * moved.real).T)  # the other half of the swing
     for node, x, y in panel.loaded:
         swings = [[complex(shape.motion(f"{node}.{c}").value.mid())] for c in ("x", "y")]
         moving.append(_draw_inertia(axes, x, y, np.array(swings) * complex(scale)))
