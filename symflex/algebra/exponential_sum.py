@@ -110,11 +110,7 @@ class ExponentialSum:
         return ExponentialSum(amplitudes, self.halvings)
 
     def turned(self, unit: Gaussian, degrees: Sequence[int]) -> ExponentialSum:
-        """Return the sum with a multiple of the first generator in its place.
-
-        ``unit`` is what it is multiplied with; ``degrees`` says of every argument to which power of the
-        generator it is proportional.
-        """
+        """Return the sum with ``unit`` times its first generator, given arguments' ``degrees`` in that."""
         amplitudes: dict[Exponent, Amplitude] = {}
         for exponent, amplitude in self.terms.items():
             moved = tuple((i, *times((a, b), power(unit, degrees[i]))) for i, a, b in exponent)
@@ -225,10 +221,7 @@ def exponential_sum(
 
 
 def expanded(powers: Mapping[str, int]) -> Iterator[tuple[int, int, Gaussian]]:
-    """Yield a, b and the coefficient of every exponential in a product of kernels of one argument.
-
-    The product is the sum of ``coefficient * exp((a + j b) x)``, over two to the power of its degree.
-    """
+    """Yield a, b and coefficient of each exponential of kernels of one argument, over 2 to the degree."""
     decay = powers.get("exp", 0)
     hyperbolic = spread(powers.get("cosh", 0), powers.get("sinh", 0))
     circular = spread(powers.get("cos", 0), powers.get("sin", 0))

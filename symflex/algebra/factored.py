@@ -147,11 +147,7 @@ class Factored:
         )
 
     def expand(self) -> fmpz_mpoly:
-        """Return the product multiplied out.
-
-        Raises ValueError when the unit is not an integer or an exponent is negative; BudgetError: SF501 when
-        the product could exceed the size limit.
-        """
+        """Return the product multiplied out; ValueError where it is no polynomial, SF501 beyond the limit."""
         return self._expand_scaled(1)
 
     def exponent_of(self, factor: fmpz_mpoly) -> int:

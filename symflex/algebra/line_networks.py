@@ -185,11 +185,7 @@ def equilibrated(size: int, rows: Values, columns: Values, coefficients: Values)
 
 
 def solved_value(size: int, height: int, rows: Values, columns: Values, coefficients: Values) -> Values:
-    """Return c x + d, where A x + b = 0, of the matrix ((A, b), (c, d)).
-
-    It has ``size + 1`` rows; coefficients stand in order of rows and columns. A step of refinement makes
-    small unknowns beside large ones as accurate as these (Skeel 1980).
-    """
+    """Return c x + d, where A x + b = 0, of ((A, b), (c, d)), with one refinement (Skeel 1980)."""
     count = coefficients.shape[1]
     starts = np.searchsorted(rows, np.arange(size + 2)).tolist()
     steps = eliminated(size, height, starts, columns, coefficients)

@@ -190,12 +190,7 @@ WAVENUMBER_NAMES = {"wave": ("gamma",), "bending": ("mu",), "pair": ("lambda_1",
 
 
 def propagate(base: Ring, demands: Sequence[tuple[Dispersion, Sequence[Factored]]]) -> Propagation:
-    """Return generators for the fundamental functions of every dispersion at every length.
-
-    Each dispersion is demanded once, without wavenumber names, with the lengths it is needed at; both live
-    over the base. Over a sparse base, where nothing is multiplied out, fundamental functions are their own
-    kernels, so dispersions are to be ``general`` or ``exponential``.
-    """
+    """Return generators for the fundamental functions of every dispersion at its lengths, over the base."""
     dispersions: list[Dispersion] = []
     kernels: list[Kernel] = []
     shapes: list[_Shape] = []

@@ -296,10 +296,7 @@ class Radicals:
         return min(value, self.reduced(value / scale * above / below), key=_size)
 
     def gcd(self, f: fmpz_mpoly, g: fmpz_mpoly) -> fmpz_mpoly:
-        """Return the greatest common divisor in s of two polynomials in normal form, by Euclid's algorithm.
-
-        Its leading coefficient in s is free of roots, and it has no content; it is one where there is none.
-        """
+        """Return the greatest common divisor in s by Euclid's algorithm, led by what is free of roots."""
         one = self.ring.constant(1)
         if not degree_in(f, 0) or not degree_in(g, 0) or self._are_coprime(f, g):
             return one
@@ -386,11 +383,7 @@ class Radicals:
         return self.normal(above) / below
 
     def split(self, factors: Iterable[tuple[fmpz_mpoly, int]]) -> list[tuple[fmpz_mpoly, int]]:
-        """Return powers of polynomials as powers of square-free coprime ones, numbers free of s left out.
-
-        What each shares with its mirror image, -s in place of s, is a part of its own: it may have roots on
-        the imaginary axis.
-        """
+        """Return powers as those of square-free coprime polynomials in s, mirror images apart."""
         base: list[tuple[fmpz_mpoly, int]] = []
         for factor, exponent in factors:
             if degree_in(factor, 0):

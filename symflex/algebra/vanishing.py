@@ -155,11 +155,7 @@ class TaylorField:
         return root.left_shift(first // 2).truncate(self.terms)
 
     def even_odd(self, argument: nmod_poly, start: int, *, circular: bool) -> tuple[nmod_poly, nmod_poly]:
-        """Return cosh and sinh, or cos and sin, of an argument.
-
-        A constant term of the argument is a transcendental angle: ``start`` stands for its exponential, or
-        for the tangent of its half.
-        """
+        """Return cosh and sinh, or cos and sin, given ``start`` for a constant angle."""
         constant = int(argument[0])
         moving = argument - self.constant(constant)
         sign = self.prime - 1 if circular else 1
@@ -246,11 +242,7 @@ TRIALS = 4  # values of the parameters that are tried in each field
 
 
 class OriginSeries:
-    """Orders at s = 0, or where another polynomial in s and parameters vanishes, of functions over one ring.
-
-    General and varying dispersions are not covered. With ``at``, a polynomial that vanishes instead of s.
-    Orders above ``terms``, in the fourth root of s, are not found.
-    """
+    """Orders at s = 0, or where ``at`` vanishes, of functions over a ring, up to ``terms`` quarters."""
 
     def __init__(
         self, ring: Ring, table: KernelTable, at: fmpz_mpoly | None = None, terms: int = ORIGIN_TERMS
@@ -301,11 +293,7 @@ def _find_point(
 def find_point(
     ring: Ring, table: KernelTable, terms: int, prepare: Callable[[dict[str, nmod_poly], TaylorField], bool]
 ) -> tuple[TaylorField, dict[str, nmod_poly]] | None:
-    """Return values for all generators that satisfy every relation, in a field where the wavenumbers exist.
-
-    Kernels of general dispersions get random values. Series have so many terms, one for numbers; ``prepare``
-    sets values that are not random, and returns False to ask for other random ones.
-    """
+    """Return values that satisfy all relations in a field, series of ``terms``; ``prepare`` may refuse."""
     random = Random(11)
     for prime in primes():
         field = TaylorField(terms, prime)

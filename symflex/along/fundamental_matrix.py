@@ -254,11 +254,7 @@ class DiscPolynomial:
 
 
 def expand(system: VaryingSystem, largest: arb, bits: int, orders: int = 0) -> PowerExpansion:
-    """Return minors of the fundamental matrix from the start of x to its end, for abs(u) <= ``largest``.
-
-    They are exact to about so many bits relative to those that grow, or have ``orders`` in u where these
-    are given. Raises SingularCoefficientError where a coefficient has a singularity on the interval.
-    """
+    """Return minors of the fundamental matrix for abs(u) <= ``largest``, to so many bits, or ``orders``."""
     largest = largest.abs_upper()
     reach = (largest * BEYOND).abs_upper()
     legs = legs_along(system, largest, reach, bits + GUARD)

@@ -173,11 +173,7 @@ def _levelled(sizes: Mapping[Place, arb], way: arb, count: int, start: Sequence[
 
 
 def legs_along(system: VaryingSystem, largest: arb, reach: arb, bits: int) -> list[Leg]:
-    """Return the parts of the interval on each of which solutions are expanded, for abs(u) <= ``largest``.
-
-    Solutions are bounded for abs(u) up to a reach. Raises SingularCoefficientError where a coefficient has a
-    singularity on the interval.
-    """
+    """Return the parts of the interval on each of which solutions are expanded, for abs(u) <= ``largest``."""
     begin, end = system.ends()
     first = [] if system.beginning is None else [_first_step(system.beginning, begin, end, reach, bits)]
     return first + _steps(system, first[0].end if first else begin, end, largest, bits)
@@ -266,11 +262,7 @@ def _first_step(beginning: SingularBeginning, start: arb, end: arb, reach: arb, 
 
 
 def growth_begun(beginning: SingularBeginning, leg: Leg, reach: arb) -> tuple[Growth, arb]:
-    """Return how solutions grow that are finite at a start where coefficients have poles.
-
-    That is on the radius of the first step; and their size at its end.
-    Raises SingularCoefficientError where that takes too many terms.
-    """
+    """Return how finite solutions at a singular start grow on the first step, and their size at its end."""
     begun = _begun_along(beginning, leg, reach, BOUND_BITS)
     if begun is None:
         raise SingularCoefficientError(float(leg.start.mid()))
@@ -299,11 +291,7 @@ def _bounded(
     sizes: tuple[arb, arb, arb],
     bits: int,
 ) -> tuple[arb, arb] | None:
-    """Return how large solutions are on a radius at most, and up to the step's end.
-
-    Sizes are the norm of B on twice the radius, the radius, and the step. The result is None if too many
-    terms of v have to be bounded before those that follow fall.
-    """
+    """Return how large solutions are on a radius, and up to the step's end; None if terms do not fall."""
     norm, radius, way = sizes
     with precision(BOUND_BITS):
         parts = [

@@ -71,11 +71,7 @@ class PartedLaw:
 
     @cached_property
     def weights(self) -> tuple[int, ...] | None:
-        """Powers of the divisor by which states are scaled: A is a polynomial in ``u = s^step/divisor`` then.
-
-        None where there are no such. Of a beam whose modulus is E (1 + eta s) moments and forces are scaled
-        by 1 + eta s, and u is s^2/(1 + eta s). Without divisors all are 0.
-        """
+        """Powers of the divisor that scale states, so that A is a polynomial in ``u = s^step/divisor``."""
         if not self.divisors:
             return (0,) * self.law.order
         if len(self.divisors) > 1:
@@ -201,11 +197,7 @@ class BoundLaw(PartedLaw):
     def expanded_about(
         self, middle: acb, reach: arb, orders: int, within: Ends | None = None
     ) -> PowerExpansion | None:
-        """Return the same in so many powers of s less a middle, for abs(s - middle) up to a reach.
-
-        It is from end to end, or ``within`` two places.
-        None where coefficients may have a pole in s so close by.
-        """
+        """Return the same in powers of s less a middle, up to a reach, maybe ``within``; None at a pole."""
         try:
             return expand(_AboutMiddle(self, middle, orders, within), reach, current_bits(), orders)
         except SingularCoefficientError as error:

@@ -109,11 +109,7 @@ Point = tuple[complex, "Sample"]
 def follow_phase(
     bound: AnyBoundFunction, omega: npt.NDArray[np.float64], roots: PoleZeroMap | None = None
 ) -> npt.NDArray[np.float64]:
-    """Return the continuous phase [rad] of a distributed system; NaN exactly at a root.
-
-    Frequencies [rad/s] are positive and increase; the function is not identically zero. ``roots`` are its
-    poles and zeros, when they are known already. SF505 when the band holds too many resonances.
-    """
+    """Return the continuous phase [rad] of a distributed system, NaN at a root; SF505 for too many."""
     walk = _Walk(bound)
     turned = None if roots is None or not walk.function.is_even else _turned_by_roots(roots, omega)
     if turned is not None:
@@ -365,11 +361,7 @@ TO_REST = 12  # frequencies below the lowest at which that rest is followed to s
 def _network_turns(
     bound: BoundNested, omega: npt.NDArray[np.float64], values: npt.NDArray[np.complex128]
 ) -> npt.NDArray[np.int64] | None:
-    """Return the whole turns that the principal values of a network's phase lack; None without its roots.
-
-    Without the poles and zeros in a disc, which are proved to be all, no value is zero in it and none is a
-    pole: what is left turns little from one frequency to the next.
-    """
+    """Return whole turns that a network's phase lacks, by its roots in a disc; None without these."""
     highest = float(np.max(np.abs(omega), initial=0.0))
     if highest == 0:
         return None
@@ -483,11 +475,7 @@ def _room(slope: int) -> float:
 def roots_if_found(
     bound: AnyBoundFunction, band: Band | None = None, judged: PoleZeroMap | None = None
 ) -> PoleZeroMap:
-    """Return the poles and zeros, or as many as can be had: a response needs none.
-
-    The certificate gives the reason if roots may be missing. Without a band all are sought, of a distributed
-    system those of :func:`symflex.roots.default_region`. ``judged`` is another map of the same function.
-    """
+    """Return the poles and zeros, or as many as can be had: the certificate says why others may lack."""
     region = None if bound.is_rational else band
     try:
         return locate(bound, region, judged=judged)

@@ -245,12 +245,7 @@ class LoopAtOrigin:
 def loop_at_origin(
     bound: BoundTransferFunction, polynomials: Sequence[fmpz_mpoly], turn: acb, times: float = 1.0
 ) -> LoopAtOrigin | None:
-    """Return A and B near 0, ``None`` if their orders or series are not known.
-
-    They are ``polynomials`` over the ring of a bound function; ``turn`` is the direction of the axis.
-
-    They reach as far as roots next to 0 can be distinguished from it, times a factor.
-    """
+    """Return the parts near 0 along ``turn``, up to the next root times a factor; ``None`` if not known."""
     ring = bound.ratio.ring
     orders, parts = [], []
     for polynomial in polynomials:

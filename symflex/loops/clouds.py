@@ -80,11 +80,7 @@ class RootCloud:
 def root_clouds(
     bound: AnyBoundFunction, located: PoleZeroMap, share: Stated, model: Model | None = None
 ) -> tuple[RootCloud, ...]:
-    """Return where the poles and zeros of a map may lie; those at s = 0 stay there.
-
-    A function that was derived with numbers has no parameters left: give its ``model``. SF804, SF801 as for
-    :func:`symflex.loops.spread.stability_spread`.
-    """
+    """Return where a map's poles and zeros may lie but at 0, of a function of numbers by its ``model``."""
     tf = bound.source
     valued = with_values(model or tf.model, dict(bound.values))
     function, box, _ = spread_function(valued, share, (tf.output.name, tf.input.name))

@@ -71,12 +71,7 @@ class DistributedFactors(AxisSearch):
 
     @property
     def where_no_delay_leads(self) -> DistributedFactors:
-        """The same on the largest part of the range, found by halving, in which the poles have a bound.
-
-        Beyond a gain at which a delayed term outweighs the others, infinitely many poles lie in the right
-        half-plane. The same whole range where that is not what keeps poles without a bound, or where no part
-        helps.
-        """
+        """The same on the largest part of the range, by halving, where poles have a bound despite delays."""
         if not any(tail in OUTWEIGHED for tail in self._tails):
             return self
         largest, good, bad = self, Fraction(0), Fraction(1)
@@ -231,11 +226,7 @@ class DistributedFactors(AxisSearch):
     def count(
         self, gain: Fraction, below: PoleCount | None = None, crossed: Sequence[Crossing] = ()
     ) -> PoleCount:
-        """Return how many poles lie in the right half-plane and on the axis, as far as they are searched.
-
-        Where that is proved, they are those ``below`` and what comes at the crossings between. SF802 when a
-        pole lies on the path of the count.
-        """
+        """Return how many poles are right and on the axis, counted, or by those ``below`` and crossings."""
         end = self.from_root(self._circle)
         changes = [
             c.change for c in crossed if c.change != 0 and not (c.frequencies and c.frequencies[0] > end)

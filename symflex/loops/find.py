@@ -283,11 +283,7 @@ def _between(
     apart: PoleCount,
     end: float | None,
 ) -> tuple[tuple[Boundary, ...], tuple[GainInterval, ...], list[str]]:
-    """Return the boundaries inside a range, the intervals they part it into, and what is not proved.
-
-    Crossings at which no count changes are left out. ``apart`` are poles that no gain moves; crossings of
-    the axis beyond ``end`` [rad/s] are left out.
-    """
+    """Return boundaries, intervals and what is not proved, but for crossings beyond ``end`` [rad/s]."""
     reasons: list[str] = []
     groups, ends = _grouped(crossings, limits, reasons)
     counts = []
@@ -529,11 +525,7 @@ MARGIN: Final = 2  # of the gain: 6 dB
 def allowed_crossover(
     intervals: Sequence[GainInterval], limit: Fraction | None, loop_gain: LoopGain
 ) -> AllowedCrossover | None:
-    """Return the crossover that the stable gains next to 0 allow, ``None`` when there are none.
-
-    Intervals ascend, and negative gains may be among them; gains were examined up to ``limit``, None for all.
-    ``loop_gain`` is that of a loop closed once.
-    """
+    """Return the crossover that stable gains next to 0 and up to ``limit`` allow; ``None`` without them."""
     about_zero = (i for i in intervals if (i.high is None or i.high > 0) and (i.low is None or not i.low > 0))
     begin = next(about_zero, None)
     if begin is None or not begin.poles.is_stable:

@@ -140,11 +140,7 @@ class GainFunctions:
         return -1 if self.nominal is not None and self.nominal < 0 else 1
 
     def domain(self, limits: Limits, *, is_endless: bool) -> Limits:
-        """Return the part of a range about the nominal gain in which all functions are real.
-
-        It goes to 100 times that value by default; of powers alone it may be endless. SF804 where there is no
-        value, SF228 where it is not inside.
-        """
+        """Return the part of a range about the nominal gain where functions are real; else SF804, SF228."""
         low, high = limits
         if is_endless and self.root is not None:
             if self.sign > 0:

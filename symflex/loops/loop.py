@@ -96,11 +96,7 @@ class Loop:
 def characteristic_loop(
     tf: TransferFunction, gain: ModelParameter, values: Mapping[str, Given] | None = None
 ) -> Loop:
-    """Return the characteristic function of the model a transfer function is of.
-
-    Any of the model's will do, with the gain as a symbol. SF801 the closed loop does not depend on the gain,
-    or the gain shapes waves or delays.
-    """
+    """Return a function's characteristic function with the gain as a symbol; SF801 where it is no gain."""
     ring, given = tf.ratio.ring, dict(values or {})
     calls = {c.generator: c.expression for c in tf.constants if c.generator in gain_generators(tf, gain.name)}
     positions = [ring.index[name] for name in (gain.name, *calls)] if gain.name in ring.index else []

@@ -106,10 +106,7 @@ AnyLoop = Loop | NetworkLoop
 
 
 def network_loop(equations: Equations, gain: ModelParameter, nominal: Fraction | None) -> NetworkLoop | None:
-    """Return a network's loop from equations with numbers in place of all parameters but the gain.
-
-    ``None`` where the gain does not stand in one row alone, as a factor. SF801 where it shapes waves.
-    """
+    """Return a network's loop, ``None`` unless the gain is a factor in one row; SF801 if it shapes waves."""
     columns = {v: i for i, v in enumerate(equations.unknowns)}
     size = len(columns)
     ring = equations.ring

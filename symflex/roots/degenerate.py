@@ -137,10 +137,7 @@ def _about(point: Root, times: int) -> Root:
 
 
 def roots_about(cramer: CramerEquations, s: acb) -> tuple[int | None, int | None]:
-    """Return how many roots denominator and numerator have within ``2^-NARROW abs(s)`` of a point: proved.
-
-    None for one whose roots are not counted: it vanishes everywhere, or has more than are looked for.
-    """
+    """Return how many roots both sides have next to a point: proved; None for one not counted."""
     found: tuple[int | None, int | None] = (None, None)
     for bits in BITS:
         with precision(bits), suppress(UndecidedError):

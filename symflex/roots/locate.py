@@ -197,10 +197,7 @@ DEFAULT_MODES = 5  # number of modes if neither the model nor the user gives it
 
 
 def default_region(bound: AnyBoundFunction) -> Region:
-    """Return where to search when nothing is said: the model's modes, or its band, or five modes.
-
-    A distributed system has infinitely many poles.
-    """
+    """Return where to search by default: the model's modes, its band, or five modes."""
     analysis = bound.source.model.analysis
     if analysis.modes is not None:
         return Modes(analysis.modes)
@@ -399,11 +396,7 @@ class _Searched:
     def judged(
         self, unproved: str | None, before: PoleZeroMap | None = None, *, is_over: bool = False
     ) -> tuple[StabilityVerdict, tuple[Root, ...], tuple[Root, ...]]:
-        """Return whether the model is stable, and its poles and hidden modes in the right half-plane.
-
-        ``unproved`` is what could not be proved of the region; ``before`` is a map of another region. Where
-        the budget ``is_over``, nothing more is searched.
-        """
+        """Return the verdict, and poles and hidden modes on the right; ``before`` is of another region."""
         bound = self.bound
         product = cancelled(bound)
         poles = [] if bound.ratio.is_zero else [(0, bound.den)]

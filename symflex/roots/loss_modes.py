@@ -46,12 +46,7 @@ UNJUDGED: Final = PoleZeroMap("", Everything(), (), (), (), Certificate("", 0, 0
 def locate_lossy(
     bound: BoundTransferFunction, region: Region, digits: int, locate: Callable[..., PoleZeroMap]
 ) -> PoleZeroMap:
-    """Find poles and zeros of a function that contains j; see the module.
-
-    ``locate`` finds those of functions with kernels.
-
-    Raises UncertifiedError: SF402 a root cannot be told from the mirror image of another.
-    """
+    """Find poles and zeros of a function with j, by ``locate`` if it has kernels; else SF402."""
     is_lossy = has_loss_factors(bound.source.model)
     if not bound.is_rational:
         check_searched(bound)

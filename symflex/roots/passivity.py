@@ -418,11 +418,7 @@ class _Structure:
         resting: set[Variable],
         forms: Sequence[Terms],
     ) -> bool:
-        """Tell whether quantities cannot have these signs, and others none but those that follow from them.
-
-        Beams hand them from end to end. A row of the equations gives the last of its terms the sign opposite
-        to the others, and is broken where all have the same.
-        """
+        """Tell whether quantities cannot have these signs, with those that follow along beams and rows."""
         known = -1
         while len(signs) > known:
             known = len(signs)

@@ -94,11 +94,7 @@ class PolynomialInS:
         return arb_poly([value_at(c, values.__getitem__, arb) for c in self.coefficients])
 
     def require_leading_coefficient(self) -> None:
-        """Prove that the leading coefficient is not zero.
-
-        SF401 when balls of 4096 bits still contain zero, as they do when the constants satisfy a relation
-        that makes the coefficient vanish.
-        """
+        """Prove that the leading coefficient is not zero; SF401 if balls of 4096 bits hold zero."""
         if self.is_exact:
             return
         for bits in ZERO_TEST_BITS:

@@ -109,11 +109,7 @@ class ClosedDefinitions:
 
 
 class _CramerQuotients:
-    """Reduces one Cramer quotient after the other over the same denominator.
-
-    With ``kept`` these definitions stay closed; those that the model of ``origin`` does not have are opened
-    last of all.
-    """
+    """Reduces Cramer's quotients over one denominator; definitions in ``kept`` stay closed."""
 
     def __init__(
         self,

@@ -114,11 +114,7 @@ class KernelReduction:
         return any(int(degrees[self.ring.index[w]]) for w in self.table.wavenumbers)
 
     def reduce(self, num: Factored, den: Factored, cancelled: Factored) -> ReducedQuotient | None:
-        """Return a quotient in lowest terms, ``None`` when the denominator is zero by the kernels' relations.
-
-        ``cancelled`` is the common factor that was cancelled before, over what rows were multiplied by to
-        clear denominators.
-        """
+        """Return a quotient in lowest terms, ``None`` where it divides by 0, given what was ``cancelled``."""
         if max(sum(len(f) for f, _ in v.factors) for v in (num, den)) > KERNEL_TERMS:
             message = f"the closed form has more than {KERNEL_TERMS} terms before it is reduced"
             hint = "let equal parts share their parameters, or split the model"
@@ -324,12 +320,7 @@ class KernelReduction:
         return divisor * rest.map_factors(self.ring, partial(self._divided, divisor, times, whole))
 
     def _modes(self, value: Factored) -> Factored:
-        """Return the factors that are modes.
-
-        What vanishes with a wavenumber is looked at elsewhere. No modes are factors that come of expressing
-        the equations in wavenumbers, such as what vanishes where those of a pair meet, nor the poles of the
-        field equations, where their solutions have essential singularities; exponentials have no zeros.
-        """
+        """Return factors that are modes: not of wavenumbers, poles of fields, or exponentials."""
         singular = [
             f for d in self.table.dispersions for c in d.characteristic for f, _ in c.denominator().factors
         ]
@@ -515,11 +506,7 @@ def _multiples(
 def _solve_relations(
     ring: Ring, table: KernelTable, parameters: Sequence[str]
 ) -> tuple[tuple[str, Factored], ...]:
-    """Return parameters as rational functions of wavenumbers and the rest, one per dispersion relation.
-
-    Each relation is linear in most of the parameters it holds, such as a density. The one with the shortest
-    expression is taken, with the relations in either order.
-    """
+    """Return parameters by wavenumbers and the rest, one per relation: the shortest, in either order."""
     relations = [r for d in table.dispersions for r in _relations(ring, d)]
     orders = (
         (relations, relations[::-1]) if any(d.kind == "pair" for d in table.dispersions) else (relations,)

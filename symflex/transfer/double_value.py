@@ -25,12 +25,7 @@ NEAR = (200, 220)  # negative powers of two between which behaviour at a point i
 def double_value(
     enclosed: Callable[[int], Ball], s: complex, patience: int | None, first: int = FIRST_BITS
 ) -> complex:
-    """Return a function's value at one complex frequency [rad/s] to double precision.
-
-    ``enclosed`` is the function by the precision, which begins with the ``first``. After ``patience``
-    doublings a value that is not a number is sought as a limit; never with None, where only a pole has none.
-    The value is nan where ``s`` is not finite, and ``inf + nan*1j`` at a pole.
-    """
+    """Return a value at s [rad/s] in doubles, a limit after ``patience`` doublings; inf at a pole."""
     if not (isfinite(s.real) and isfinite(s.imag)):
         return complex(nan, nan)
     point, last = acb(s.real, s.imag), None if patience is None else first << patience

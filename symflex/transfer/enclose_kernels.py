@@ -50,12 +50,7 @@ class KernelValues:
     def at(
         self, s: Value, near: Mapping[str, Value] | None = None, root: Callable[[Value], Value] | None = None
     ) -> dict[str, Value]:
-        """Return the values of all generators at ``s`` [rad/s], and characteristic roots without names.
-
-        Where the roots of a dispersion can be separated, they stand for its fundamental functions. It is a
-        point, a ball, or a series about either; wavenumbers take the same branch as ``near``, values at a
-        ball that contains ``s``. Their square roots are by default those of :func:`square_root`.
-        """
+        """Return all generators at ``s`` [rad/s], a point, ball or series, on the branch of ``near``."""
         values: dict[str, Value] = {"s": s, **self._numbers}
         coefficients: dict[Dispersion, tuple[Value, ...]] = {}
         shifts: dict[Dispersion, Value] = {}

@@ -234,11 +234,7 @@ class EquationsAt:
 
 
 class NamedValues(dict[str, Arithmetic]):
-    """The names in equations with their values at one s, each made when it is first asked for.
-
-    Called with a rational function of these, they return its value: a series where it depends on what they
-    move along.
-    """
+    """Names in equations with their values at one s, each made when asked for; called, of a quotient."""
 
     def __init__(self, equations: EquationsAt, s: Arithmetic, along: str = "") -> None:
         self.equations, self.along = equations, "" if along == LAPLACE else along

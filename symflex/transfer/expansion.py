@@ -112,11 +112,7 @@ HELD = 4  # how many times as many terms as are allowed may be held before they 
 def compose_rational(
     ring: Ring, factor: fmpz_mpoly, images: Sequence[Factored | None], most: int = TERM_LIMIT
 ) -> Factored:
-    """Return ``factor`` over ``ring`` with the images in place of its generators.
-
-    An image is ``None`` where a generator does not occur. Raises BudgetError: SF502 when far more than
-    ``most`` terms come of it.
-    """
+    """Return ``factor`` over ``ring`` with images for generators; SF502 far beyond ``most`` terms."""
     most = min(most, MEMORY_LIMIT // ring.bytes_of(1))
     degrees = [int(d) for d in factor.degrees()]
     if _is_small(factor, images):

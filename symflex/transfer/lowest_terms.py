@@ -32,12 +32,7 @@ def cancel(
     images: LineImages | None = None,
     radicals: Radicals | None = None,
 ) -> tuple[Factored, Factored]:
-    """Return numerator/denominator in lowest terms, and the common factor that was found.
-
-    Both may be rational; equal factors cancel at once, the others pairwise by exact greatest common divisors,
-    those of polynomials in roots modulo the relations of these. ``images`` may be shared by calls over one
-    ring, so that an image is made once.
-    """
+    """Return a quotient in lowest terms, and the common factor; calls may share ``images`` on a line."""
     if radicals:
         quotient, shared = cancel(numerator, denominator, images)
         reduced, more = radicals.in_lowest_terms(quotient)
@@ -156,12 +151,7 @@ Image = tuple["fmpz_mpoly", int]  # a polynomial in the line's parameter, and it
 
 
 class DeterminantsOnLine:
-    """The determinants of one system on a line.
-
-    Definitions are over ``plain``, the ring without sums and definitions; only the generator ``along``
-    varies, all do by default. What does not vary is random, or has the residues of ``point``: then images
-    are taken modulo its prime.
-    """
+    """One system's determinants where ``along`` alone varies, or all; the rest is random, or ``point``."""
 
     def __init__(
         self,

@@ -183,12 +183,7 @@ AnyTransferFunction = TransferFunction | NestedTransferFunction  # both exact re
 def derive_nested(
     equations: Equations, pairs: Sequence[tuple[str, str]]
 ) -> tuple[NestedTransferFunction, ...]:
-    """Return transfer functions in nested form.
-
-    Those of a distributed model are nameless, see :func:`symflex.equations.assemble.assemble`. Raises
-    ModelError: SF30x when the equations are singular; InternalError: SF991 when a function is not what they
-    say.
-    """
+    """Return transfer functions in nested form; SF30x for singular equations, SF991 where they disagree."""
     model = equations.model
     solve = ModelSolve(model, nested_transfer, equations)
     cut = CutModel(solve)
@@ -270,12 +265,7 @@ class BoundNested:
         return cache(self.enclosed)
 
     def __call__(self, s: complex, bits: int = FIRST_BITS) -> complex:
-        """Return the value at one complex frequency [rad/s] to double precision.
-
-        The precision is raised, from so many ``bits`` on, until the ball's radius is below the last bit.
-        Where the expression has no value, at s = 0 mostly, it is the limit, found from two points close by;
-        at a pole that is ``inf + nan*1j``.
-        """
+        """Return the value at one s [rad/s] in doubles; a limit where it has none, inf at a pole."""
         if self.is_zero:
             return 0j
         # A wide ball may contain a zero divisor where the function has none, so retry before seeking a limit.
@@ -425,8 +415,5 @@ def bind_nested(tf: NestedTransferFunction, values: Mapping[str, Given] | None =
 
 
 def bind_any(tf: AnyTransferFunction, values: Mapping[str, Given] | None = None) -> AnyBoundFunction:
-    """Return a transfer function in either form with the declared values, or the given ones in their place.
-
-    Raises what :func:`symflex.transfer.bind` raises.
-    """
+    """Return a transfer function in either form with the declared values, or the given ones; see ``bind``."""
     return bind_nested(tf, values) if isinstance(tf, NestedTransferFunction) else bind(tf, values)

@@ -86,10 +86,7 @@ def check_solvable(equations: Equations) -> None:
 
 
 def check_along(model: Model) -> None:
-    """Return if coefficients that vary along x are analytic where they are needed, with the declared values.
-
-    Nothing is told where a parameter has none. Raises ModelError: SF250 saying where one is not.
-    """
+    """Check that coefficients along x are analytic at the declared values, if all are known: else SF250."""
     if is_tapered(model) and all(p.value is not None for p in model.parameters):
         for bound in derive_bound(model, model.transfer_functions[:1]):
             bound.check_along()
@@ -141,11 +138,7 @@ def followed_along_x(tf: TransferFunction) -> TransferFunction:
 
 
 def assemble_sparse(model: Model) -> Equations:
-    """Return the equations over a ring of any number of names, for the nested form.
-
-    A model inside a block is expanded first, and needs the ordinary ring. Raises ModelError: SF910 where
-    coefficients vary along x, or with roots of s.
-    """
+    """Return sparse equations for the nested form; SF910 with coefficients along x, or roots of s."""
     if _is_expanded(model):
         reason = "with roots of s" if model.root else "where coefficients vary along x"
         message = f"the nested form of networks is not available yet {reason}"
@@ -160,10 +153,7 @@ def assemble_sparse(model: Model) -> Equations:
 def derive_nested(
     model: Model, pairs: Sequence[tuple[str, str]] | None = None
 ) -> tuple[NestedTransferFunction, ...]:
-    """Return the transfer functions of the given pairs, all by default, as straight-line programs.
-
-    See :func:`symflex.transfer.derive_nested`.
-    """
+    """Return the transfer functions of the given pairs, all by default, as straight-line programs."""
     wanted = model.transfer_functions if pairs is None else tuple(pairs)
     return nested_form.derive_nested(assemble_sparse(model), wanted)
 
@@ -271,13 +261,7 @@ def derive_bound(model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[BoundT
 def derive_for_roots(
     model: Model, pairs: Sequence[tuple[str, str]], *, is_explained: bool = False, is_named: bool = False
 ) -> tuple[AnyBoundFunction, ...]:
-    """Return transfer functions with the declared values, in the form in which roots are found.
-
-    In nested form where beams, rods, shafts or strings are too large for the expanded one, or roots are found
-    faster without it. With ``is_explained`` the expanded form is wanted for more than roots,
-    and with ``is_named`` in terms of the parameters.
-    Raises what :func:`derive_bound` raises otherwise.
-    """
+    """Return functions with declared values for roots, nested where that is faster, unless it explains."""
     if not model.is_distributed or _is_expanded(model):
         return derive_bound(model, pairs)
     is_small = not _may_be_large(model)

@@ -309,11 +309,7 @@ def joined_values(model: Model) -> list[list[Expression]]:
 
 
 def seen_at_the_input(model: Model, output: str, source: Input) -> Model:
-    """Return the model with an output written in the value of the field, or node, on which an input acts.
-
-    An output of one value of a field is written in the equal one that stands in a condition with the input,
-    else in the node it is equal to. Nothing else is changed.
-    """
+    """Return the model with an output written in the field's value or node on which an input acts."""
     (wanted,) = (o for o in model.outputs if o.name == output)
     unknowns = {u for f in model.fields for u in f.unknowns}
     shown = {n for n in names(wanted.expression) if isinstance(n, Call) and n.name in unknowns}

@@ -137,12 +137,7 @@ def separate(
     model: Model | None = None,
     varies: Callable[[Equations], bool] | None = None,
 ) -> Separation:
-    """Return the parts of a constrained system, those without poles left out.
-
-    Parts with the input ``source`` are marked; elements of ``model`` are named, by default all those of
-    the equations. With ``varies``, which tells whether a determinant depends on s, determinants of parts with
-    waves are not multiplied out.
-    """
+    """Return a constrained system's parts with poles, those with the input marked; ``varies`` tells of s."""
     named = equations.model if model is None else model
     matrix = _Matrix.of(equations, source)
     matrix.settle()
@@ -239,11 +234,7 @@ class Relation:
 def relate(
     whole: Determinants, pair: tuple[str, str], factor: Factored, constrained: Determinants
 ) -> Relation | None:
-    """Return how the numerator of a pair and the determinant of a constrained system are related.
-
-    ``pair`` is output and input; ``factor`` is what the output multiplies its coordinate with, over the
-    equations' ring. ``None`` when the numerator is zero, or when the generators of the two rings differ.
-    """
+    """Return how a pair's numerator and a constrained determinant are related, ``None`` if they are not."""
     equations = whole.equations
     if not same_generators(constrained.equations, equations):
         return None

@@ -215,10 +215,7 @@ def _all_zero(coefficients: Sequence[acb]) -> bool:
 def expand_at_pole(
     bound: BoundTransferFunction | NetworkSides, root: Root, digits: int
 ) -> tuple[acb, LaurentSeries]:
-    """Return a pole other than 0, refined, and the principal part there, to so many significant digits.
-
-    SF405 when poles cannot be separated, or the coefficients cannot be decided.
-    """
+    """Return a pole but 0, refined, and its principal part to so many digits; SF405 if undecided."""
     name = bound.bound.name if isinstance(bound, NetworkSides) else bound.name
     if not root.certified:
         message = f"poles of {name} that cannot be separated have no residues of their own"
@@ -474,11 +471,7 @@ BRANCHES = 4  # branches of a wavenumber about a point where it vanishes
 def local_values(
     evaluator: KernelValues, centre: acb, terms: int, branches: int = 1
 ) -> dict[str, Value] | None:
-    """Return the series of all generators about p [rad/s]; None if a wavenumber is no such series.
-
-    So many ``terms`` in e are computed with; roots of what vanishes lose some. ``branches`` is n: 1 where
-    wavenumbers neither vanish nor meet, else :data:`BRANCHES`.
-    """
+    """Return the series of all generators about p, in powers of e^(1/branches); None if there is none."""
     with series_terms(terms):
         moved = [centre, *[acb(0)] * (branches - 1), acb(1)]
         values = evaluator.at(acb_series(moved[:terms], terms), root=square_root)

@@ -123,11 +123,7 @@ def derivatives(
 
 
 def is_fixed_at_zero(at: EquationsAt, pair: tuple[str, str], root: Root, *, is_pole: bool) -> bool:
-    """Tell whether as many roots are at 0 whatever the parameters, as of motions of a rigid body.
-
-    Orders are those of determinants modulo a prime, with random residues for the parameters, and with their
-    values: one is mistaken with odds of about 1 in 2^61.
-    """
+    """Tell whether as many roots are at 0 for all parameters: modulo a prime, odds of 1 in 2^61 are left."""
     orders = []
     for values in ((), at.values):
         cramer = CramerEquations.of(at.equations, *pair, values)

@@ -189,12 +189,7 @@ def differentiate(
     parameters: Sequence[ModelParameter] | None = None,
     digits: int = 15,
 ) -> tuple[RootDerivative, ...]:
-    """Return how poles and zeros move with parameters: poles first, each with all parameters.
-
-    ``tf`` has the parameters as symbols, ``found`` its roots at the values; by default all parameters that
-    occur are taken. A root at 0 that is there for all values of the parameters has the derivative 0, exactly.
-    Where the significant digits wanted of a derivative take too long, fewer are certified.
-    """
+    """Return how roots that are ``located`` move with parameters, by default all: poles first."""
     used = [p for p in tf.parameters if parameters is None or p in parameters]
     if tf.ratio.is_zero:
         return ()
@@ -313,11 +308,7 @@ class RootBranch:
 
 
 def find_branch(tangents: Tangents, part: Factored, root: Root) -> RootBranch | Obstacle:
-    """Return the factor of a numerator or denominator that alone is zero at a root, and simply.
-
-    Else ``"multiple"``, where a root of higher multiplicity splits, or several factors meet in it: it has no
-    derivative; or ``"undecided"``, where the enclosure of the root does not tell.
-    """
+    """Return the factor that alone is zero at a root, and simply; else why there is none."""
     place, first = root.enclosure(), root.working_bits()
     for bits in precisions(first, MOST_TIMES * first):
         meeting = _meeting(tangents, [f for f, _ in part.factors], place, bits)
@@ -450,11 +441,7 @@ class Tangents:
     values: Mapping[str, ExactValue]  # of all parameters that occur
 
     def along(self, direction: str, s: acb) -> TangentPoint:
-        """Return all generators at ``s`` [rad/s], with their derivatives at the current precision.
-
-        ``direction`` is ``"s"``, or a parameter. On a ball wavenumbers take one branch each; where one is
-        zero, or two are equal, values are not finite.
-        """
+        """Return all generators at ``s`` [rad/s] to first order in ``direction``: ``s`` or a parameter."""
         real = {name: first_order(enclosure(v)(), int(name == direction)) for name, v in self.values.items()}
         tangents = {"pi": first_order(arb.pi()), **real}
         for constant in self.tf.constants:
@@ -502,10 +489,7 @@ class Tangents:
         return entries
 
     def _tangent_law(self, law: Dispersion, parameter: str) -> BoundLaw:
-        """Return the law of states, and after them of their derivatives with respect to a parameter.
-
-        Derivatives are those at a place x, of a law that begins at a tip those at the same way from there.
-        """
+        """Return the law of states and of their derivatives by a parameter, at x or the way from a tip."""
         if (law, parameter) in self._laws:
             return self._laws[law, parameter]
         source, values = self.tf.ratio.ring, {n: enclosure(v) for n, v in self.values.items()}

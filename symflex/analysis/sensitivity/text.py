@@ -26,11 +26,7 @@ OBSTACLES = {"multiple": "no derivative: multiple roots part", "undecided": "not
 
 
 def sensitivity_text(moved: Sequence[RootDerivative], width: int = WIDTH) -> str:
-    """Return how natural frequencies and damping ratios change, a line per pair of roots and parameter.
-
-    ``moved`` holds poles, then zeros; each root with all parameters in the same order. Names that do not fit
-    in the width stand on lines of their own.
-    """
+    """Return how frequencies and damping ratios change, a line per pair and parameter, within a width."""
     lines: list[str] = []
     for kind, group in groupby(moved, key=lambda m: m.kind):
         lines += ["", TITLES[kind], *_table(list(group), width)]

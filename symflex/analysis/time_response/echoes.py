@@ -64,10 +64,7 @@ class Echo:
 
 
 def echoes(quotient: DelayedQuotient, last: arb) -> list[Echo]:
-    """Return the expansion up to a time [s], in order, at the current precision.
-
-    Raises TooManyEchoesError, and UncertifiedError: SF810 where the output would come before the input.
-    """
+    """Return the expansion up to a time [s]; TooManyEchoesError, or SF810 for what comes too early."""
     first = earliest(quotient.below, quotient.durations)
     below = {later(delay, first): quotient.durations.polynomial(p) for delay, p in quotient.below.items()}
     leading = below.pop(NO_DELAY)

@@ -34,11 +34,7 @@ BAND, SPARE = 6.0, 10.0  # ratio of last time to first on a path, and ln of boun
 
 
 def along_hyperbolas(asked: Asked) -> Sampled:
-    """Return a response.
-
-    Raises ModelError: SF910 where the function is not known far out, as with delays, after very many time
-    constants, and at t = 0 where it is infinite.
-    """
+    """Return a response; SF910 where the function is not known far out, or infinite at t = 0."""
     bound, digits = asked.bound, asked.digits
     far = FunctionFarOut.of(bound, ceil(STEEPEST / bound.sheets / (pi / 2) * SECTORS))
     orders = [sum(degree_in(f, 0) * e for f, e in law.shift.factors) for law in bound.kernels.dispersions]

@@ -103,11 +103,7 @@ class PassiveBound(BoundBySize):
 
 
 def passive_bound(bound: BoundTransferFunction, integrations: int) -> tuple[PassiveBound, int] | Refused:
-    """Return what bounds the modes of a passive model's function.
-
-    Its input is a force or torque, its output a node's displacement or angle, the difference of two, or a
-    derivative of one.
-    """
+    """Return what bounds a passive model's modes between a force or torque and displacements."""
     model = bound.source.model
     if model.fields:
         return Refused("stored energy is known for elements, not for fields")

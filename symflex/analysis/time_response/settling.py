@@ -206,11 +206,7 @@ def settled(
 def _right_of(
     bound: BoundTransferFunction, rate: arb, count: int, digits: int
 ) -> tuple[list[Root], list[Root]]:
-    """Return so many poles right of a line, without those at 0; fewer where these are not the lowest.
-
-    Those that a zero is proved to take out are apart. Others that agree with a zero count as poles: their
-    residues are enclosed.
-    """
+    """Return so many poles right of a line but at 0, without those a zero is proved to take out."""
     poles: list[Root] = []
     cancelled: list[Root] = []
     for more in (0, EFFORT.line_modes) if count else ():

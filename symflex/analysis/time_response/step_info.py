@@ -66,7 +66,10 @@ ZERO: Final = arb(0)
 
 @dataclass(frozen=True, slots=True)
 class StepInfo:
-    """Balls of a settled step response in seconds and the output's unit; None what is not found."""
+    """Properties of a step response that comes to rest, each a ball; None if it is not found.
+
+    Times are in seconds, values in the output's unit.
+    """
 
     final: arb  # the value it tends to
     peak: arb | None  # the largest value in the direction of the final one; None if it exceeds that nowhere
@@ -348,11 +351,7 @@ class NormalisedResponse:
         return t
 
     def peak(self) -> tuple[arb | None, arb] | None:
-        """Return when the response is the highest and how high; no time where it exceeds 1 nowhere.
-
-        The result is None if it cannot be decided. Of all intervals that may have the highest value the one
-        that may be the highest is halved, until all that are left are short.
-        """
+        """Return when the response is highest and how high, no time if never above 1; None if undecided."""
         close = CLOSE + 4 * float(self.pieces[-1].rest)
         until = self.quiet(close)
         if until is None:

@@ -157,11 +157,7 @@ class ReducedSystem:
 def eliminate_unit_pivots(
     rows: tuple[SparseRow, ...], outputs: tuple[SparseRow, ...], unknowns: int
 ) -> ReducedSystem:
-    """Eliminate unknowns by unit pivots, the cheapest first (Markowitz 1957).
-
-    Columns of the sparse rows below ``unknowns`` are unknowns, the others inputs. The quotient of bordered
-    determinant and determinant stays that of the full system.
-    """
+    """Eliminate unknowns, columns below ``unknowns``, by unit pivots, cheapest first (Markowitz 1957)."""
     live: dict[int, SparseRow] = {i: dict(r) for i, r in enumerate(rows)}
     goals = [dict(r) for r in outputs]
     columns = set(range(unknowns))

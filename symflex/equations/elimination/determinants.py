@@ -54,11 +54,7 @@ class Determinants:
 
     @staticmethod
     def of(equations: Equations, most: int | None = None) -> Determinants:
-        """Return the determinants of a system; minors of more than ``most`` terms are refused.
-
-        Raises ModelError: SF30x when the equations are singular, with the reason; BudgetError: SF502 when the
-        determinant would be too large.
-        """
+        """Return a system's determinants, of minors of ``most`` terms; else SF502, or SF30x if singular."""
         system = close(equations)
         reduced = eliminate_unit_pivots(system.rows, system.outputs, len(system.unknowns))
         if len(reduced.rows) != len(reduced.columns):
@@ -168,11 +164,7 @@ class LaplaceExpansion(ABC, Generic[Entry, Value]):
 
 @dataclass
 class Minors(LaplaceExpansion["fmpz_mpoly", "fmpz_mpoly"]):
-    """The minors of polynomial rows over any set of columns, each computed once.
-
-    Rows are sparse, in the order of expansion. Raises BudgetError: SF502 when the expansion exceeds its
-    limits.
-    """
+    """The minors of polynomial rows over any columns, each computed once; SF502 beyond limits."""
 
     ring: Ring = field(kw_only=True)
     most: int | None = field(default=None, kw_only=True)  # terms of one of them

@@ -136,11 +136,7 @@ def listed(names: list[str]) -> str:
 
 
 def free_at_rest(equations: Equations, output: str) -> tuple[str, ...]:
-    """Return the nodes and signals that are arbitrary at rest without input, unobservable ones first.
-
-    They belong to solutions of ``A(0) x = 0`` in which the output stays 0, where there are some.
-    ``equations`` have numbers in place of all parameters, and no kernels.
-    """
+    """Return nodes and signals that are arbitrary at rest without input, unobservable ones first."""
     point = {**random_point(equations.ring.names), LAPLACE: 0}
     for name, value in equations.definitions:
         point[name] = _number(value, point, PRIME)
@@ -253,11 +249,7 @@ def is_singular(equations: Equations) -> bool:
 
 
 def unreached(equations: Equations) -> tuple[Diagnostic, ...]:
-    """Return a warning for every input that reaches nothing, output that stays zero, and idle element.
-
-    The equations must not be singular. SF652: an input whose transfer functions are all zero; SF653: an
-    output that no input reaches; SF654: an element without which every transfer function is the same.
-    """
+    """Return warnings: inputs that reach nothing (SF652), outputs (SF653) and elements (SF654) unreached."""
     model = equations.model
     prime, value = numbers_at_random(equations)
     forms = [row.form for row in equations.rows]

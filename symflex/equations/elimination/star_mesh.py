@@ -108,11 +108,7 @@ class _SolvedUnknown:
 
 
 def eliminate(equations: Equations, pairs: Sequence[tuple[str, str]]) -> Elimination:
-    """Return transfer functions, by name of output and input, as quotients of nested expressions.
-
-    The equations are over a ring of either kind; those of a distributed model are nameless, so that each
-    fundamental function is one generator. Raises ModelError: SF30x when the equations are singular.
-    """
+    """Return transfer functions by output and input as nested quotients; SF30x for singular equations."""
     if len(equations.rows) != len(equations.unknowns):
         raise _singular(equations, ())
     with uncollected():

@@ -226,11 +226,7 @@ class LosslessSearch:
         )
 
     def numbered(self, number: int) -> Root | None:
-        """Return one mode by its number, from 1, without those below it; ``None`` where it is not isolated.
-
-        Modes count by natural frequency; roots that mirror each other count as one. RootOnPathError where
-        roots are too close to each other for circles to pass between them.
-        """
+        """Return one mode by its number by frequency, mirror images as one; ``None`` if not isolated."""
         low, below = self._circle(number - 1, WITHIN)
         high, upto = self._circle(number, BEYOND)
         for share in islice(cycle(SHARES), HALVINGS):

@@ -90,11 +90,7 @@ class CertifiedWinding(Winding[E_co]):
             return _whole(total / (2 * arb.pi()))
 
     def count_right(self, low: float, high: float, angle: float = pi / 2) -> int:
-        """Return the number of roots in the right half-plane with ``low < ln(abs(s)) < high``: proved.
-
-        F is real on the real axis: below it, the argument turns as above. RootOnAxisError where a root lies
-        on the imaginary axis, or too close to it; RootOnPathError on the arcs.
-        """
+        """Return the number of roots on the right with ``low < ln(abs(s)) < high``: proved."""
         smallest = max(SMALLEST, 1e-9 * max(high - low, pi))
         above, below = complex(high, angle), complex(low, angle)
         try:
@@ -107,12 +103,7 @@ class CertifiedWinding(Winding[E_co]):
             return _whole(turn / arb.pi())
 
     def count_within(self, z: float, left: float) -> int:
-        """Return the number of roots with ln(abs(s)) below ``z``, those at s = 0 included: proved.
-
-        ``left`` is pi, or pi/2 for functions whose roots mirror each other in the imaginary axis: by symmetry
-        an arc from the positive real axis tells what the circle does, unless nothing is paired.
-        RootOnPathError where a root lies on the circle, or too close to it.
-        """
+        """Return the number of roots with ln(abs(s)) below ``z``, also at 0: proved, up to ``left``."""
         turn = self.certified_turn(complex(z, 0.0), complex(z, left))
         with precision(BITS):
             if not self.function.is_paired:

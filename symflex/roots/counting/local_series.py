@@ -121,11 +121,7 @@ def sampled_series(
 
 
 def bound_on_circle(function: Entire, centre: acb, reach: arb, arcs: int) -> arb | None:
-    """Return at least the size of an analytic function on a circle, ``None`` where none is found.
-
-    Centre and radius ``reach`` [rad/s] are exact; the circle is cut into so many ``arcs`` at first. What is
-    bounded is the function's :attr:`~symflex.roots.functions.entire.Entire.power`.
-    """
+    """Return a bound on a function's power on an exact circle, in ``arcs`` at first; ``None`` without one."""
     with precision(WIDE_BITS):
         disc = centre + acb(arb(0, reach), arb(0, reach))
         if not function.is_analytic_on(disc, WIDE_BITS):
@@ -169,11 +165,7 @@ class SeriesSteps:
     _bits: int = field(default=0, init=False)
 
     def change(self, middle: acb, reach: arb, start: acb, end: acb, bits: int) -> tuple[float, arb]:
-        """Return a bound on how far the argument turns away from that of an exponential, and its turn.
-
-        The bound is infinite where nothing is proved. ``reach`` is the most that s moves from the middle on
-        the step [rad/s]; ``bits`` the precision, if more than usual is needed.
-        """
+        """Return a bound on the turn of the argument off an exponential's, maybe infinite, and its turn."""
         bits = max(BITS, 2 * bits)
         with precision(bits):
             centre, radius = middle.mid(), reach + (middle - middle.mid()).abs_upper()

@@ -137,11 +137,7 @@ class Winding(Generic[F_co]):
         return self._reaches[z]
 
     def smallest(self, left: float, holes: Sequence[Cell] = ()) -> float:
-        """Return ln of a radius within which no roots lie but those at s = 0, by all appearances.
-
-        ``left`` is pi, or pi/2 for functions whose roots mirror each other in the imaginary axis; holes are
-        stayed away from.
-        """
+        """Return ln of a radius with no roots within but at 0, by all appearances, off holes."""
         order = self.function.order_at_zero()
         z = min([self._scale(), *(hole.low - RING for hole in holes)])
         for _ in range(LARGEST_RING):

@@ -554,10 +554,7 @@ class _SumsOnAxis:
         )
 
     def _generators(self, radius: float) -> dict[str, tuple[int, Fraction, arb]] | None:
-        """Return s and wavenumbers from a radius on: eighths of a turn, powers of omega, and their factors.
-
-        None where the square of a wavenumber, in bending its fourth power, is not even in s and has no sign.
-        """
+        """Return s and wavenumbers far out: eighths of a turn, powers of omega, factors; else None."""
         named = {LAPLACE: (2, Fraction(1), arb(1))}
         kernels = self.values.evaluator
         for law in (law for law in kernels.table.dispersions if law.wavenumbers):

@@ -116,13 +116,7 @@ class Count:
         return Proof(counted + (count_roots(at_zero) if is_disc else 0), count)
 
     def right(self, high: float, angle: float = pi / 2) -> int:
-        """Return how many roots lie in the right half-plane, with ln(abs(s)) below ``high``: proved.
-
-        The axis may be at another angle.
-
-        RootOnAxisError, RootOnPathError where a root lies on the path, which follows the imaginary axis, or
-        too close to it; SF505, SF506.
-        """
+        """Return how many roots are right of the axis, or an ``angle``, with ln(abs(s)) below ``high``."""
         winding = CertifiedWinding(self.winding.function, tries_series=True)
         low = min(winding.smallest(pi, self.holes), high - 1.0)
         if winding.count_within(low, pi) != self.order:
@@ -166,11 +160,7 @@ def _meet(a: Cell, b: Cell) -> bool:
 
 
 def is_whole_ring(cell: Cell, left: float, holes: Sequence[Cell]) -> bool:
-    """Tell whether a cell and its mirror images make a ring, whose circles pass by all holes.
-
-    The cell lies in the upper half-plane. ``left`` is the argument of s up to which the search goes: pi, or
-    pi/2 where mirror images make up for the rest.
-    """
+    """Tell whether a cell and its mirror images, up to ``left``, make a ring whose circles pass by holes."""
     return (
         cell.right <= 0
         and cell.left >= left

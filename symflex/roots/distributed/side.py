@@ -200,11 +200,7 @@ class Side:
         self._set(ring.roots)
 
     def numbered(self, number: int) -> Root | None:
-        """Return one mode by its number, from 1, in order of natural frequency; ``None`` without so many.
-
-        Of an undamped function, neither the modes below it are found nor does its number matter; of any
-        other, all below are.
-        """
+        """Return one mode by its number by frequency, of undamped functions alone; ``None`` if fewer."""
         if self._search is None:
             ordered = [root for root in in_order(self._exact) if not root.is_zero]
         else:

@@ -212,11 +212,7 @@ class KernelFunction:
             return all(at_centre(evaluator.value(value, values)).is_finite() for value in laws)
 
     def turn_of_exponentials(self, ball: acb, start: acb, end: acb, bits: int) -> tuple[float, arb] | None:
-        """Return how far arg F, of :attr:`power`, turns between two points of a ball that contains the path.
-
-        First comes a measure of how far F may turn anywhere on the ball, infinite where nothing is proved,
-        then the turn. ``None`` when the function is not a sum of exponentials.
-        """
+        """Return how far arg F turns between any points of a ball, and between two; ``None`` if not a sum."""
         if self.exponentials is None:
             return None
         self._spend(bits)
@@ -261,12 +257,7 @@ class KernelFunction:
         raise ModelError(Diagnostic("SF231", message, None, hint))
 
     def _of_one_value(self) -> tuple[Factored, int]:
-        """Return the product without those powers of wavenumbers that change with the branch, and an order.
-
-        Where a wavenumber vanishes they are roots of half or quarter order; numerator and denominator share
-        them, and they are not roots of a transfer function. The order is that of the power in which choosing
-        the wavenumbers does not matter.
-        """
+        """Return the product without what changes with wavenumbers' branches, and a power of one value."""
         part, order = self.part, 1
         bits, values, value = self._anywhere()
         with precision(bits):

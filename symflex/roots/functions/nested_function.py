@@ -21,11 +21,7 @@ LOW = -200.0  # ln of a frequency [rad/s] below all roots but those at rest
 
 @dataclass(eq=False)
 class NestedFunction:
-    """A transfer function in nested form along paths in ``z = ln(s)``.
-
-    It has the attributes of :class:`~symflex.roots.functions.kernel_function.KernelFunction` that paths ask
-    for; ``work`` counts operations.
-    """
+    """A transfer function in nested form along paths in ``z = ln(s)``; ``work`` counts operations."""
 
     bound: BoundNested
     work: int = field(default=0, init=False)

@@ -193,10 +193,7 @@ class DiscSearch:
             self._lost = min(self._lost + bits - known, most)
 
     def sides(self, radius: float) -> tuple[DiscSide, DiscSide]:
-        """Return denominator and numerator in a disc about 0, with all their roots there.
-
-        EssentialSingularityError where roots accumulate in it; UndecidedError where they are not proved.
-        """
+        """Return denominator and numerator in a disc about 0, with all their roots there: proved."""
         wide = radius
         for _ in range(TRIES):
             try:

@@ -106,11 +106,7 @@ class PolynomialValues(NamedValues):
 
 
 def network_of(equations: Equations, output: str, source: str, *, is_passive: bool = False) -> Network:
-    """Return the network between an input and an output; equations have numbers in place of parameters.
-
-    Where it ``is_passive``, its inertia is not negative.
-    OtherNetworkError where damping, motors, loops, delays or fields make it none, with what did.
-    """
+    """Return the network of two ends, from equations with numbers; OtherNetworkError if it is none."""
     return _NetworkReading(equations).network(output, source, is_passive=is_passive)
 
 

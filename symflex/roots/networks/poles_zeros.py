@@ -66,12 +66,7 @@ def locate_in_network(
     is_default: bool,
     energy: EnergyProof,
 ) -> PoleZeroMap:
-    """Find poles and zeros of a transfer function, by counts where nothing loses energy, else in discs.
-
-    ``equations`` have numbers in place of all parameters, and ``energy`` says of which poles it is proved
-    where they lie. Of a function
-    that is zero, nothing is searched.
-    """
+    """Find poles and zeros of a network, by counts where nothing loses energy, else in discs."""
     if is_zero(equations, *pair):
         return _Sought(name, region, digits, is_default).nothing(ZERO)
     cramer = CramerEquations.of(equations, *pair)

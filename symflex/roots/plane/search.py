@@ -82,11 +82,7 @@ class RootSearch:
         return self._winding.smallest(self.left, self.holes)
 
     def extend(self, modes: int, radius: float = -inf) -> None:
-        """Search outwards until there are enough modes, and at least to ln of a radius.
-
-        The results accumulate in :attr:`roots` and :attr:`missing`; none lacks as far as :attr:`reached`.
-        SF505, SF506; what was found stays.
-        """
+        """Search outwards for enough modes, at least to ln of a radius; what was found stays."""
         if self.reached == -inf:
             self.reached = self.smallest()
         while self.reached < radius or (known := count_modes(self.roots)) < modes:

@@ -167,11 +167,7 @@ def complete(discs: Sequence[Disc], degree: int) -> bool:
 
 
 def groups(discs: Sequence[Disc]) -> list[tuple[Disc, ...]]:
-    """Return the discs in groups that touch each other, ordered by their first member.
-
-    A disc without a finite radius, as a multiple root has, is grouped by closeness alone; that is a
-    proposal, which :meth:`LevelPolynomial.surround` proves or refuses.
-    """
+    """Return discs in groups that touch, by first members; those without a radius by closeness alone."""
     bounded = [
         d if d.radius.is_finite() else Disc(d.centre, (d.centre.abs_upper() * GROUPING).mid()) for d in discs
     ]
