@@ -33,8 +33,7 @@ class SingularStart:
     powers: tuple[int, ...]
     orders: tuple[tuple[int, ...], ...]
     matrix: tuple[tuple[Factored, ...], ...]
-    # v at the start, per state that is free there; columns of others are zero.
-    values: tuple[tuple[Factored, ...], ...]
+    values: tuple[tuple[Factored, ...], ...]  # v at the start, per free state; other columns are zero
 
     @property
     def free(self) -> tuple[int, ...]:
@@ -64,10 +63,8 @@ class Dispersion:
     # s and the parameters. Empty for ``exponential`` and ``varying``.
     characteristic: tuple[Factored, ...]
     shift: Factored  # every solution is ``exp(-shift*x)`` times one of the polynomial above; zero for most
-    # Generator names: none, ``(gamma,)``, ``(mu,)`` or ``(lambda_1, lambda_2)``.
-    wavenumbers: tuple[str, ...] = ()
-    # Of a varying one, A in ``z' = A(x, s) z``, and where x begins.
-    matrix: tuple[tuple[Factored, ...], ...] = ()
+    wavenumbers: tuple[str, ...] = ()  # none, ``(gamma,)``, ``(mu,)`` or ``(lambda_1, lambda_2)``
+    matrix: tuple[tuple[Factored, ...], ...] = ()  # A in ``z' = A(x, s) z`` if it varies, and x's start
     start: tuple[Factored, ...] = ()
     singular: SingularStart | None = None  # where a stiffness vanishes at the start
     span: Span | None = None  # where such equations are written

@@ -78,8 +78,7 @@ class Argument:
 class AxisWave:
     """Terms ``exp(g) (even(t) cos(p) + odd(t) sin(p))``."""
 
-    # growth and phase: multiples of the arguments, which make up g and p.
-    growth: Multiples
+    growth: Multiples  # growth and phase: multiples of the arguments, which make up g and p
     phase: Multiples
     even: Polynomial  # of the cosine
     odd: Polynomial  # of the sine

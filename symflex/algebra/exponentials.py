@@ -28,8 +28,7 @@ class KernelPair:
     """A pair of kernels of one argument."""
 
     kind: Literal["hyperbolic", "circular"]  # ``hyperbolic`` or ``circular``
-    # even and odd: cosh and sinh, or cos and sin.
-    even: Kernel
+    even: Kernel  # even and odd: cosh and sinh, or cos and sin
     odd: Kernel
     coordinates: tuple[str, ...]  # ``(E,)``, or ``(t, u)``
 

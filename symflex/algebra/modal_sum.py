@@ -51,8 +51,7 @@ class Frame:
     # Orders of the derivatives, one per slot, symmetric in slots of the same mode, and the position of the
     # coefficient.
     terms: tuple[tuple[tuple[int, ...], int], ...]
-    # The products of exponentials that do not cancel, sorted, and what each is divided by.
-    keys: tuple[tuple[Key, int], ...]
+    keys: tuple[tuple[Key, int], ...]  # products of exponentials that stay, sorted, and their divisors
 
 
 @dataclass(frozen=True, eq=False)

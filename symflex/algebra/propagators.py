@@ -53,8 +53,7 @@ class Propagation:
     table: KernelTable  # what the wavenumbers and kernels are; its values are over ``base``
     lengths: tuple[tuple[Factored, ...], ...]  # per dispersion, the lengths asked for
     propagators: tuple[Propagator, ...]  # in the order of their generators
-    # Per dispersion and length, its multiples of the kernels' base lengths.
-    coordinates: tuple[tuple[tuple[int, ...], ...], ...] = ()
+    coordinates: tuple[tuple[tuple[int, ...], ...], ...] = ()  # per law and length, multiples of bases
 
     def embed(self, value: Factored) -> Factored:
         """Return a value of the base ring over ``ring``."""

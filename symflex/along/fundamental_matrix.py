@@ -63,8 +63,7 @@ class PowerExpansion:
 
     system: VaryingSystem
     legs: Sequence[Leg]
-    # How solutions grow about the start of every leg, up to the reach and up to the largest abs(u).
-    discs: Sequence[Sequence[Growth]]
+    discs: Sequence[Sequence[Growth]]  # how solutions grow about each leg's start, up to sizes of abs(u)
     largest: arb  # values are for abs(u) up to this, or not much more
     bits: int  # to which they are exact, relative to minors that grow
     orders: int  # in u that are kept; 0 where they follow from the bits

@@ -137,10 +137,8 @@ class BoundLaw(PartedLaw):
     length: Factored
     constants: Mapping[str, Callable[[], arb]]  # generators free of s and x
     parameters: Mapping[str, Callable[[], arb]]  # what functions of x are made of
-    # Powers of the way from the start that entries are multiplied by.
-    orders: Mapping[Place, int] = field(default_factory=dict)
-    # Growth at rest and about frequencies, once it is known.
-    _growths: dict[int, float] = field(default_factory=dict, repr=False)
+    orders: Mapping[Place, int] = field(default_factory=dict)  # powers of the way from the start in entries
+    _growths: dict[int, float] = field(default_factory=dict, repr=False)  # at rest and about frequencies
 
     @cached_property
     def beginning(self) -> tuple[tuple[int, ...], BoundLaw, BoundLaw] | None:

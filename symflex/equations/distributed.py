@@ -62,8 +62,7 @@ class Medium:
     parts: tuple[tuple[Component, int], ...]
 
     along: AlongX | None = None  # where its coefficients vary along x
-    # Of these the end at which the state is taken for a start: the one at which a stiffness vanishes, if any.
-    origin: Factored | None = None
+    origin: Factored | None = None  # the end that is taken for a start, if a stiffness vanishes there
     is_turned: bool = False  # whether that is where x ends
     held: frozenset[str] = frozenset()  # states that are zero there, or follow from others, in what is finite
 

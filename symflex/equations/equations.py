@@ -43,16 +43,13 @@ class Continuum:
     name: str  # the element's or field's
     kind: str  # the element's type, or ``field``
     system: FieldSystem  # over the ring without kernels
-    # start and length: where x begins, and how far it reaches; over the same ring.
-    start: Factored
+    start: Factored  # start and length: where x begins, and how far it reaches; over the same ring
     length: Factored
-    # Per state, the unknown it equals at the start; None if it is zero there.
-    initial: tuple[Variable | None, ...]
+    initial: tuple[Variable | None, ...]  # per state, the unknown it equals at the start; None if zero
     loads: tuple[Variable, ...] = ()  # what acts all along it, per column of ``system.loads``
     # Of a line element, per state, the unknown it equals at the end, and the sign with which it does.
     final: tuple[tuple[Variable | None, int], ...] = ()
-    # Where coefficients vary along x, the states that are coupled, and their law.
-    parts: tuple[tuple[tuple[int, ...], Dispersion], ...] = ()
+    parts: tuple[tuple[tuple[int, ...], Dispersion], ...] = ()  # coupled states, and their law
 
 
 @dataclass(frozen=True)
@@ -61,16 +58,13 @@ class Equations:
 
     model: Model  # where they come from
     ring: Ring  # generators: s, parameters, closed definitions, pi, functions of constants
-    # Each closed definition in terms of the generators before it.
-    definitions: tuple[tuple[str, Factored], ...]
+    definitions: tuple[tuple[str, Factored], ...]  # in terms of the generators before each
     constants: tuple[ConstantFunction, ...]  # what the function generators stand for
-    # unknowns and inputs: the names of x and u.
-    unknowns: tuple[Variable, ...]
+    unknowns: tuple[Variable, ...]  # unknowns and inputs: the names of x and u
     inputs: tuple[Variable, ...]
     rows: tuple[EquationRow, ...]  # as many as unknowns; polynomial but over a sparse ring
     outputs: tuple[OutputRow, ...]  # the names of y and their forms
-    # What the generators of distributed parts are; ``ring`` is its ring then.
-    propagation: Propagation | None = None
+    propagation: Propagation | None = None  # what generators of distributed parts are
     cleared: Factored | None = None
     continua: tuple[Continuum, ...] = ()  # the distributed parts
     is_split: bool = False  # what is coupled has several laws somewhere, or equal wavenumbers

@@ -79,13 +79,11 @@ class ExactEvaluator:
     blocks: Mapping[str, Factored]  # the blocks' transfer functions
     through: Mapping[Variable, LinearForm]  # the elements' through quantities
     definitions: Mapping[str, Expression]  # opened inside the arguments of functions
-    # A random point of a prime field, with the definitions that are known by now.
-    point: Mapping[str, int] = field(default_factory=dict)
+    point: Mapping[str, int] = field(default_factory=dict)  # random, of a prime field
     prime: int = PRIME
     fields: Collection[str] = ()  # the unknowns of fields
     radicals: Radicals | None = None  # relations of the roots among the generators
-    # Returns a field's unknown, or a derivative of it, at the point a call names.
-    field_value: Callable[[Call], LinearForm] | None = None
+    field_value: Callable[[Call], LinearForm] | None = None  # of a field at a point
     # What calls of fields were found to be.
     states: dict[Expression, LinearForm] = field(default_factory=dict, repr=False)
     root: RootOfS | None = None  # where the ring's s stands for a root of s

@@ -55,8 +55,7 @@ class OpenBox:
     radius: float | str  # beyond which no root lies in the right half-plane [rad/s], or why none is known
     pieces: tuple[tuple[Piece, ...], ...] = ()  # factor by factor
     weights: tuple[float, ...] = ()  # how much each parameter contributes to what is left
-    # One of each piece, if there is one of all: where none of them vanishes no root is on the axis.
-    lines: tuple[Line, ...] = ()
+    lines: tuple[Line, ...] = ()  # one of each piece, or none: where none vanishes no root is on the axis
 
     @property
     def is_bounded(self) -> bool:
@@ -71,8 +70,7 @@ class CharacteristicFunction:
     tf: TransferFunction  # whose denominator and hidden factors these are
     names: tuple[str, ...]  # of the parameters that lie in boxes
     values: tuple[tuple[str, ExactValue], ...]  # of the others
-    # The same with fundamental functions in place of kernels, entire at s = 0 too; None without waves.
-    nameless: TransferFunction | None = None
+    nameless: TransferFunction | None = None  # without names for kernels, entire at s = 0; None if no waves
     chosen: tuple[fmpz_mpoly, ...] | None = None  # factors in place of those of all poles
 
     @classmethod

@@ -59,8 +59,7 @@ class DistributedFactors(AxisSearch):
 
     bound: BoundTransferFunction  # carries ring and kernels
     gain: str  # its name
-    # Those with kernels or wavenumbers, and those with negative exponents.
-    factors: tuple[GainPolynomial, ...]
+    factors: tuple[GainPolynomial, ...]  # with kernels or wavenumbers, or negative exponents
     limits: tuple[Fraction, Fraction]  # range of the gain
     up_to: float | None  # a frequency up to which to search where no end can be proved [rad/s]
     reasons: list[str] = field(default_factory=list)

@@ -53,19 +53,15 @@ class RootLocus:
 
     gain: str  # its name
     limits: tuple[Fraction, Fraction]  # first and last value
-    # start and end: poles at these, and the zeros the poles go to, proved.
-    start: PoleZeroMap
+    start: PoleZeroMap  # start and end: poles at these, and the zeros the poles go to, proved
     end: PoleZeroMap
-    # Curves [rad/s] from poles at the first gain, not proved. They stop where poles accumulate.
-    branches: tuple[tuple[complex, ...], ...]
+    branches: tuple[tuple[complex, ...], ...]  # curves [rad/s] from poles at first; not proved
     arrived: bool  # every curve ends next to a certified pole at the last gain, and no two at the same
-    # The certified poles at the last gain [rad/s] to which a curve of any kind goes.
-    ends: tuple[complex, ...] = ()
+    ends: tuple[complex, ...] = ()  # certified poles at last [rad/s] to which any curve goes
     # Curves to poles at the last gain from where none is marked: from infinity, as those of a delay, from
     # higher modes at the first gain, or from where poles accumulate.
     entering: tuple[tuple[complex, ...], ...] = ()
-    # The nominal gain and the certified poles there, if it lies between the limits.
-    nominal: tuple[Fraction, PoleZeroMap] | None = None
+    nominal: tuple[Fraction, PoleZeroMap] | None = None  # the gain and its poles, if within
 
     def __repr__(self) -> str:
         low, high = (float(gain) for gain in self.limits)

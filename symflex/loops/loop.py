@@ -32,12 +32,10 @@ NO_LOOP = "a loop is closed in [signals], as in e = 'r - y', u = 'K*e'"
 class GainPolynomial:
     """One factor of the characteristic function: ``sum(coefficients[i] * K^i)``."""
 
-    # Functions of s over the ring of the bound transfer function, from K^0 on; some may be zero.
-    coefficients: tuple[Factored, ...]
+    coefficients: tuple[Factored, ...]  # functions of s over the ring, from K^0 on; some may be zero
     multiplicity: int  # how often the factor occurs
     is_hidden: bool = False  # it cancelled from the transfer function the loop was read from
-    # Where functions of the gain occur: the exponents of the gain and of these, coefficient by coefficient.
-    exponents: tuple[tuple[int, ...], ...] = ()
+    exponents: tuple[tuple[int, ...], ...] = ()  # per coefficient, of the gain and of functions of it
     symbolic: fmpz_mpoly | None = None  # the factor over the ring of the transfer function
 
     @property
@@ -69,8 +67,7 @@ class Loop:
     bound: BoundTransferFunction  # carries the ring, the constants and the kernels; its gain has any value
     gain: ModelParameter  # k
     nominal: Fraction | None  # the gain's value, where it is a rational number
-    # Whose product the characteristic function is, up to what has no roots.
-    factors: tuple[GainPolynomial, ...]
+    factors: tuple[GainPolynomial, ...]  # of the characteristic function, up to what has no roots
     source: TransferFunction  # with the gain as a symbol
     given: Mapping[str, Given] = field(default_factory=dict)  # values in place of declared ones
     functions: GainFunctions | None = None  # of the gain, which the factors hold

@@ -61,8 +61,7 @@ class LoopFunction:
     """A and B of one factor ``A + K B`` of a characteristic function, or more parts of another factor."""
 
     bound: BoundTransferFunction  # whose ring and kernels they have
-    # Polynomials over that ring, without common denominator.
-    a: fmpz_mpoly
+    a: fmpz_mpoly  # polynomials over that ring, without common denominator
     b: fmpz_mpoly
     others: tuple[fmpz_mpoly, ...] = ()
 

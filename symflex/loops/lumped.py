@@ -44,8 +44,7 @@ class LumpedFactor:
     factor: GainPolynomial
     constants: tuple[RealConstant, ...]  # real numbers the coefficients hold as symbols
     ring: Ring  # w, K and the constants
-    # even and odd: E and O without their common factor.
-    even: fmpz_mpoly
+    even: fmpz_mpoly  # even and odd: E and O without their common factor
     odd: fmpz_mpoly
     common: fmpz_mpoly  # the greatest common factor of E and O
     loop: Loop | None = None  # whose factor it is

@@ -60,8 +60,7 @@ class NetworkLoop:
     nominal: Fraction | None  # its value, where that is a rational number
     cramer: CramerEquations  # whose denominator is A, and whose numerator is -B
 
-    # The row of the model that the gain stands in. r is the last of the rows, e the last of the columns.
-    acts: int
+    acts: int  # the row of the model that the gain stands in; r is the last row, e the last column
 
     @property
     def model(self) -> Model:

@@ -63,8 +63,7 @@ class Peak(Printed):
     digits: int
     band: Band | None  # searched; None for all frequencies
     magnitude: arb  # enclosure; infinite if a pole lies on the axis or the function grows without end
-    # Enclosures [rad/s], one of which has it, as far as it is known; none if it is approached as omega grows.
-    places: tuple[arb, ...]
+    places: tuple[arb, ...]  # [rad/s], one of which has it, as far as known; none as omega grows
     reasons: tuple[str, ...] = ()  # what is not proved
     h2: arb | None = None  # the H2 norm of a stable rational function
 

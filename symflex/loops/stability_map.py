@@ -48,8 +48,7 @@ class Boundary:
 class GainInterval:
     """An open interval of gains on which the number of unstable poles does not change."""
 
-    # low and high: its ends; ``None`` where it has none.
-    low: arb | None
+    low: arb | None  # low and high: its ends; ``None`` where it has none
     high: arb | None
     poles: PoleCount  # closed-loop poles that are not in the left half-plane
 
@@ -105,24 +104,19 @@ class StabilityMap(Printed):
     is_complete: bool = True  # it is proved that no pole lies in the right half-plane beyond the radius
     reasons: tuple[str, ...] = ()  # what is open, and why
     digits: int = 15  # asked for
-    # Which the stable gains next to 0 allow; none where there are none, or the loop is closed several times.
-    crossover: AllowedCrossover | None = None
+    crossover: AllowedCrossover | None = None  # which stable gains next to 0 allow, of one loop
     # Which phase margins beyond the radius are not below [rad], where no more than that is known of them.
     margin_beyond: float | None = None
     # How poles were counted: ``polynomials``, ``argument principle``, ``roots``, ``passive loop``; ``boxes``
     # of a parameter that need not be a gain.
     method: str = ""
-    # Poles that no gain moves, without kernels: hidden ones are not counted in ``intervals``.
-    apart: PolesApart = NOTHING_APART
-    # What holds at a nominal gain that was examined alone, where ``intervals`` leave it open.
-    at_nominal: StabilityVerdict | None = None
+    apart: PolesApart = NOTHING_APART  # poles that no gain moves: hidden ones are not in ``intervals``
+    at_nominal: StabilityVerdict | None = None  # what holds there alone, if ``intervals`` leave it open
     tf: str = ""  # ``"OUT/IN"``, which sees the poles that are not hidden; empty where nothing is
     is_passive: bool = False  # it is proved that no gain of the range brings a pole into the right half-plane
     is_narrowed: bool = False  # the range ends where a delayed term may outweigh the others
-    # Where the data end that the model was fitted to, which is ``radius`` then [rad/s].
-    data_end: float | None = None
-    # Poles of the nominal gain in the right half-plane beyond that, without kernels: their abs(s) [rad/s].
-    beyond: tuple[float, ...] = ()
+    data_end: float | None = None  # where the data of a fit end, the ``radius`` then [rad/s]
+    beyond: tuple[float, ...] = ()  # abs(s) of right-half-plane poles beyond, without kernels [rad/s]
     gain_at_end: float | None = None  # the gain with which the loop gain is one where the data end
     peaks: LoopPeaks | None = None  # of the nominal gain, if the loop is stable and they were asked for
 
@@ -350,12 +344,10 @@ class Crossing:
     # 0.
     frequencies: tuple[arb, ...]
     is_infinite: bool = False  # a pole passes through infinity: the highest power of s vanishes
-    # Poles that mirror each other in the axis for every gain meet on it, and leave it or enter it.
-    is_symmetric: bool = False
+    is_symmetric: bool = False  # poles that mirror each other for every gain meet on the axis
     is_singular: bool = False  # the equations have no unique solution there
     is_open: bool = False  # it is not decided whether poles are on the axis there
-    # Growth with the gain of the right-half-plane poles of factors with kernels; None where unknown.
-    change: int | None = 0
+    change: int | None = 0  # of right-half-plane poles with kernels, as it grows; None if unknown
 
 
 @dataclass(frozen=True, slots=True)

@@ -38,8 +38,7 @@ SUBDIVISION = "subdivision"
 class Guess:
     """An engine that guesses all roots of a polynomial."""
 
-    # Returns one guess per root in the closed upper half-plane, ``None`` where it does not settle.
-    propose: Proposer
+    propose: Proposer  # returns one guess per root in the upper half-plane, ``None`` where it does not settle
     best_to: float = inf  # degree up to which it is asked in its turn; beyond, after all others
     largest: float = inf  # degree beyond which it is not asked
 

@@ -83,8 +83,7 @@ class EnergyProof:
     rests: bool = False  # all rests where no energy is lost: none lies on the axis but at 0
     limit: float = 0.0  # abs(s) [rad/s] beyond which the above is so; with 0 it is everywhere
     has_loop: bool = False  # signals or blocks act on the structure
-    # A loop whose gain is a spring and a damper, ``stiffness + damping s``, up to a positive factor.
-    stiffness: float = 0.0
+    stiffness: float = 0.0  # of a loop whose gain is ``stiffness + damping s``, up to a factor
     damping: float = 0.0
 
     @property

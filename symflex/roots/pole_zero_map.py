@@ -57,8 +57,7 @@ class StabilityVerdict:
     """
 
     word: Literal["stable", "marginal", "unstable", "unknown"]
-    # Poles in the open right half-plane, with multiplicity; ``None`` where they are not all counted.
-    right: int | None
+    right: int | None  # poles in the open right half-plane; ``None`` where they are not all counted
     certified: bool  # the word is proved
     reason: str = ""  # what it follows from, or what is not proved. Never empty where something is not.
     found: int = 0  # poles in the right half-plane that are known, at least
@@ -282,8 +281,7 @@ class HiddenRoot:
     """A root of a factor that cancelled between numerator and denominator."""
 
     root: Root  # the mode that is uncontrollable or unobservable
-    # ``"cancelled"`` exactly; ``"coincident"`` when a pole and a zero agree in all digits.
-    cause: str = "cancelled"
+    cause: str = "cancelled"  # exactly; ``"coincident"`` when two agree in all digits
     is_exact: bool = False  # what coincides is proved to be equal
 
     @property
@@ -296,8 +294,7 @@ class HiddenRoot:
 class Exclusion:
     """A part of the s plane that no search can exhaust."""
 
-    # re and im: its centre [rad/s]; the conjugate is left out too.
-    re: float
+    re: float  # re and im: its centre [rad/s]; the conjugate is left out too
     im: float
     radius: float  # [rad/s]
     reason: str  # why

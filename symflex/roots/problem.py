@@ -44,11 +44,9 @@ class PolynomialInS:
     (2, (3, 0, 2))
     """
 
-    # In ascending powers of s, all in ``context``; trailing zeros are dropped.
-    coefficients: tuple[fmpz_mpoly, ...]
+    coefficients: tuple[fmpz_mpoly, ...]  # in ascending powers of s, without trailing zeros
     context: fmpz_mpoly_ctx  # ring of the coefficients; generator number i stands for ``constants[i]``
-    # One for each generator; empty when all coefficients are integers.
-    constants: tuple[RealConstant, ...] = ()
+    constants: tuple[RealConstant, ...] = ()  # one for each generator; none with integers alone
 
     def __post_init__(self) -> None:
         if len(self.constants) != self.context.nvars():
@@ -111,8 +109,7 @@ class PolynomialInS:
 class RootProblem:
     """The roots of a product of powers of polynomials."""
 
-    # Polynomials with positive exponents; they need not be coprime nor square-free.
-    factors: tuple[tuple[PolynomialInS, int], ...]
+    factors: tuple[tuple[PolynomialInS, int], ...]  # with positive exponents, maybe with common factors
 
     def __post_init__(self) -> None:
         if any(exponent < 1 for _, exponent in self.factors):

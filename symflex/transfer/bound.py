@@ -139,8 +139,7 @@ class BoundTransferFunction:
     is_of_model: bool = True  # its poles are those of the source's model; not so of a loop gain
     is_of_s: bool = True  # a root of s that stands in place of s is one; else it is the variable itself
     fixed: tuple[tuple[str, Callable[[], arb]], ...] = ()  # constants that waves without inertia came down to
-    # The function with all parameters, where numbers stood for some of them from the start.
-    symbolic: TransferFunction | None = None
+    symbolic: TransferFunction | None = None  # with all parameters, where numbers stood for some
 
     def __getstate__(self) -> dict[str, object]:
         """Leave out what is kept of earlier computations."""

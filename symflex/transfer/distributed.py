@@ -55,8 +55,7 @@ WAYS = 12  # ways to solve the dispersion relations that are tried when orders o
 class ReducedQuotient:
     """A quotient in lowest terms."""
 
-    # num and den: entire in s; they may bear negative powers of wavenumbers, whose poles kernels cancel.
-    num: Factored
+    num: Factored  # num and den: entire in s, maybe with negative powers of wavenumbers that cancel
     den: Factored
     shared: Factored  # the common factor that was cancelled
     table: KernelTable  # what the generators are; its base lengths may be half the given ones

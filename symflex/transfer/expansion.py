@@ -33,8 +33,7 @@ class Expansion:
     plain: Ring  # s, parameters, pi and functions of constants
     ring: Ring  # the same and, of a distributed system, its wavenumbers and kernels
     radicals: Radicals  # the relations of roots over ``ring``
-    # What definitions, and propagators, are over ``ring``.
-    images: dict[str, Factored] = field(default_factory=dict)
+    images: dict[str, Factored] = field(default_factory=dict)  # of definitions and propagators
     most: int = TERM_LIMIT  # terms of one factor
 
     @staticmethod

@@ -88,8 +88,7 @@ class NestedTransferFunction:
     output: Output  # what is measured
     input: Input  # what drives
     program: StraightLine  # the steps; those of several functions of a model may share a program
-    # num and den: steps of it.
-    num: int
+    num: int  # num and den: steps of it
     den: int
     quantity: str  # ``receptance``, ``mobility``, ...
     unit: str  # SI unit, empty when unknown

@@ -40,11 +40,9 @@ class ClosedForm:
     """The same function with sub-impedances and definitions kept as single symbols."""
 
     opening: Opening  # the ring with one generator per closed sum, and the way to the one without
-    # num and den: polynomials in that ring, coprime also when they are opened.
-    num: fmpz_mpoly
+    num: fmpz_mpoly  # num and den: polynomials in that ring, coprime also when they are opened
     den: fmpz_mpoly
-    # Degrees in s of both when they are opened, where these have been found without that.
-    order: tuple[int, int] | None = None
+    order: tuple[int, int] | None = None  # degrees in s of both when opened, if known without that
 
     @property
     def closure(self) -> Closure:
@@ -115,8 +113,7 @@ class TransferFunction:
     parts: tuple[Factored, Factored] | None = None  # of a distributed system, :attr:`num` and :attr:`den`
     # The equations it was compared with, for comparing it again when it has numbers.
     solve: ModelSolve | None = field(default=None, compare=False, repr=False)
-    # True when factors with kernels cancelled and left none: all distributed parts are hidden.
-    hides_waves: bool = False
+    hides_waves: bool = False  # factors with kernels cancelled and left none: all are hidden
 
     @cached_property
     def ratio(self) -> Factored:

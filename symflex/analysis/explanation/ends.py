@@ -125,8 +125,7 @@ class Bending:
 
     name: str  # the element or field
     is_massless: bool  # it bends without waves
-    # Proved: at every real s > 0 all its solutions grow or decay along x, and none travels.
-    is_evanescent: bool
+    is_evanescent: bool  # proved: at every real s > 0 all solutions grow or decay along x, none travels
 
 
 def bending_between(model: Model, equations: Equations, output: Output, source: Input) -> Bending | None:

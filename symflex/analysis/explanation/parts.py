@@ -34,14 +34,12 @@ SUPPORTS = (Fixed, Pin, Slider)
 class ConstrainedPart:
     """A part of a constrained system that moves by itself."""
 
-    # elements, fields and signals: names of what it is made of, supports left out.
-    elements: tuple[str, ...]
+    elements: tuple[str, ...]  # elements, fields, signals: names of what it is made of but supports
     fields: tuple[str, ...]
     signals: tuple[str, ...]
     order: int | None  # number of its poles; ``None`` when they are infinitely many
     has_input: bool  # whether the input drives it
-    # The factors in s of its determinant, over the equations' ring; 1 where that is not multiplied out.
-    determinant: Factored = field(compare=False, repr=False)
+    determinant: Factored = field(compare=False, repr=False)  # its factors in s; 1 if not multiplied out
     system: Equations = field(compare=False, repr=False)
 
     @property
@@ -219,8 +217,7 @@ class Relation:
 
     order: int  # the power of s in ``factor``, from what the output does to the coordinate it shows
     filtered: Factored  # the rest of ``factor`` that depends on s
-    # What else the numerator has: zeros that are not poles of the constrained system; None if not known.
-    transmission: Factored | None
+    transmission: Factored | None  # what else is above: zeros that are no poles; None if not known
     apart: Factored  # what only the constrained system has: poles of it that are not zeros
     has_zeros: bool  # whether the numerator depends on s but for ``factor``
     is_delayed: bool  # the constant also contains exponentials of s, which have neither zeros nor poles

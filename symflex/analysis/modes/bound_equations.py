@@ -32,8 +32,7 @@ Column = tuple[acb, ...]
 class NullSpace:
     """A basis of the null space."""
 
-    # For a matrix in the balls whose null space has as many dimensions, a basis of it is enclosed.
-    basis: tuple[Column, ...]
+    basis: tuple[Column, ...]  # encloses one of any matrix in the balls that has as many dimensions
     is_refuted: bool  # true when no matrix in the balls has a null space of that dimension
 
 

@@ -28,8 +28,7 @@ FEWEST_SAMPLES, MOST_SAMPLES = 32, 4096
 class Motion:
     """What one unknown does in a mode."""
 
-    # As an expression names it: ``x_tip``, ``p.theta``, ``motor.i``; ``w''(0)`` of a field at its start.
-    name: str
+    name: str  # as an expression names it: ``x_tip``, ``p.theta``, ``motor.i``; ``w''(0)`` of a field
     variable: Variable  # the unknown
     value: acb  # its complex amplitude, enclosed
     unit: str  # SI unit; empty for signals and fields
@@ -212,12 +211,10 @@ class EnclosedModeShape:
     """The motion of the model at one pole, up to a complex factor."""
 
     pole: Root
-    # One for every unknown of the equations: nodes, forces and currents, signals, and constants of fields.
-    motions: tuple[Motion, ...]
+    motions: tuple[Motion, ...]  # one for every unknown of the equations
     distributed: tuple[DistributedShape, ...]  # of every beam, rod, shaft, string and field
     reference: str  # what is 1: a node, or ``element(x)`` with the place; of a frame ``element.y(x)``
-    # The pole is certified, and has only this shape: then every ball contains the true amplitude.
-    certified: bool
+    certified: bool  # the pole is certified, and has no other shape: balls hold the true amplitudes
 
     def __repr__(self) -> str:
         return f"<EnclosedModeShape at {self.pole.frequency_hz():.6g} Hz, {self.reference} = 1>"

@@ -42,15 +42,12 @@ class KeptRoots:
     """The poles and zeros that are kept."""
 
     modes: int  # modes among the poles, roots at 0 aside
-    # poles and zeros: those kept.
-    poles: tuple[Root, ...]
+    poles: tuple[Root, ...]  # poles and zeros: those kept
     zeros: tuple[Root, ...]
     found: PoleZeroMap  # what was known, some of those left out among them
     omitted_hz: float | None  # natural frequency of the first pole left out [Hz]
     is_exact: bool  # nothing is left out of a rational function
-    # By how much the degree of the numerator exceeds that of the denominator, of a rational function of which
-    # nothing is left out; else 0.
-    excess: int
+    excess: int  # degree of the numerator less that of the denominator if nothing is left out, else 0
 
     @property
     def highest_hz(self) -> float | None:

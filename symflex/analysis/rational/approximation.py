@@ -80,8 +80,7 @@ class ErrorScan:
     The arrays are read-only.
     """
 
-    # frequency_hz and error: shape (n,): Increasing frequencies [Hz], and the relative error at each.
-    frequency_hz: npt.NDArray[np.float64]
+    frequency_hz: npt.NDArray[np.float64]  # frequency_hz, error: increasing frequencies, errors there
     error: npt.NDArray[np.float64]
     at: Callable[[float], float]  # the error at a frequency [Hz]
 
@@ -186,11 +185,9 @@ class RationalEvaluator:
 
     order: int  # of the zero at s = 0; negative of a pole
     leading: complex  # what the function over ``s^order`` is at s = 0
-    # poles and zeros: those other than 0.
-    poles: npt.NDArray[np.complex128]
+    poles: npt.NDArray[np.complex128]  # poles and zeros: those other than 0
     zeros: npt.NDArray[np.complex128]
-    # Pole, power and coefficient of partial fractions; with them these are summed.
-    terms: tuple[tuple[complex, int, complex], ...] | None = None
+    terms: tuple[tuple[complex, int, complex], ...] | None = None  # pole, power, coefficient: summed
     polynomial: tuple[float, ...] = ()  # added to the partial fractions, in ascending powers of s
 
     def at(self, s: complex) -> complex:

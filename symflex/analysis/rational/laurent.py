@@ -399,8 +399,7 @@ class PrincipalPart:
 
     root: Root  # the pole
     pole: acb  # its enclosure, refined [rad/s]
-    # Enclosures of the coefficients of ``1/(s - p)``, ``1/(s - p)^2``, ... up to the pole's order.
-    coefficients: tuple[acb, ...]
+    coefficients: tuple[acb, ...]  # of ``1/(s - p)``, ``1/(s - p)^2``, ... up to the pole's order
     is_estimate: bool  # the pole could not be distinguished from others, or the residue is not proved
 
     @property

@@ -54,8 +54,7 @@ class Elimination:
     """Quotients as steps of a straight-line program."""
 
     program: StraightLine  # over the generators of the equations; definitions stand for their values
-    # Per pair, numerator and denominator; neither need be a polynomial.
-    quotients: tuple[tuple[int, int], ...]
+    quotients: tuple[tuple[int, int], ...]  # per pair, numerator and denominator, maybe no polynomials
     pivots: tuple[int, ...]  # what was divided by: the product of these is the determinant, up to its sign
     waves: tuple[Waves, ...] = ()  # what generators that are functions of others stand for
 
@@ -64,8 +63,7 @@ class Elimination:
 class Waves:
     """Fundamental functions of one dispersion at one length, whose arguments are earlier steps."""
 
-    # Position of every generator with the order of the derivative, or ``EXPONENTIAL``.
-    generators: tuple[tuple[int, int], ...]
+    generators: tuple[tuple[int, int], ...]  # their positions, and orders, or ``EXPONENTIAL``
     coefficients: tuple[int, ...]  # ``c_0, ..., c_(n-1)`` of the monic characteristic polynomial
     shift: int  # of its roots: the generator of order ``EXPONENTIAL`` is ``exp(-shift*length)``
     length: int

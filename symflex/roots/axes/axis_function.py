@@ -131,13 +131,10 @@ Term = tuple[int, int, Powers, Powers]
 class _Numbers:
     """What a function of t and its derivative are made of."""
 
-    # growths and phases: rates of t and t^2 in exponentials, and in sines and cosines.
-    growths: list[Rate]
+    growths: list[Rate]  # growths and phases: rates of t and t^2 in exponentials, and in sines and cosines
     phases: list[Rate]
-    # Of exponentials that are products of two before them, the positions of these.
-    products: Sequence[tuple[int, int] | None]
-    # values and slopes: what is summed.
-    values: list[Term]
+    products: Sequence[tuple[int, int] | None]  # where two exponentials before one make it
+    values: list[Term]  # values and slopes: what is summed
     slopes: list[Term]
 
 

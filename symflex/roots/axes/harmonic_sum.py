@@ -58,8 +58,7 @@ SHORTEST = 1e-12  # share of the arc; a step that would have to be shorter says 
 class ArcTerm:
     """Terms ``c x^n`` before one exponential."""
 
-    # linear and square: rates p of x and q of x^2.
-    linear: acb
+    linear: acb  # linear and square: rates p of x and q of x^2
     square: acb
     powers: tuple[tuple[int, acb], ...]  # n and c
 
@@ -279,8 +278,7 @@ UNITS: Mapping[int, Gaussian] = {REAL: (1, 0), IMAGINARY: (1, 1)}  # what t is m
 class LosslessFunction:
     """A product of powers of sums of exponentials of x."""
 
-    # The sums over x, and their exponents; the first generator is x, the others are constants.
-    factors: tuple[tuple[ExponentialSum, int], ...]
+    factors: tuple[tuple[ExponentialSum, int], ...]  # over x, the first generator, with exponents
     enclosures: Enclosures  # what terms are made of
 
     def on_axis(self, number: int, axis: int) -> AxisFunction | None:

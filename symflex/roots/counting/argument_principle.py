@@ -43,9 +43,7 @@ E_co = TypeVar("E_co", bound=Entire, covariant=True)
 class LogarithmicLine:
     """What is straight in z = ln(s)."""
 
-    # start and end: z; an imaginary part that is the double nearest to pi or pi/2 stands for that number
-    # itself.
-    start: complex
+    start: complex  # start and end: z; the double nearest to pi or pi/2 stands for that number itself
     end: complex
 
     def _place(self, t: float) -> complex:

@@ -159,8 +159,7 @@ NOTHING = (inf, arb("nan"))  # bound and turn where nothing is proved
 class SeriesSteps:
     """Follows one function by its power series."""
 
-    # Its :attr:`~symflex.roots.functions.entire.Entire.power` is followed.
-    function: Entire
+    function: Entire  # its :attr:`~symflex.roots.functions.entire.Entire.power` is followed
     _last: LocalSeries | None = field(default=None, init=False)
     _bits: int = field(default=0, init=False)
 

@@ -68,8 +68,7 @@ class Level:
     counter: Counter
     entries: Sequence[tuple[int, int, arb, arb]]
     borders: Sequence[Sequence[tuple[int, arb]]]
-    # Each with its direction, of one at an angle.
-    members: Sequence[tuple[NetworkMember, MemberBalls, arb_mat | None]]
+    members: Sequence[tuple[NetworkMember, MemberBalls, arb_mat | None]]  # each with its direction
 
     @staticmethod
     def of(counter: Counter, bits: int) -> Level:

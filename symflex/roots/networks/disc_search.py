@@ -45,8 +45,7 @@ class DiscSide:
     series: DiscSeries
     value: Callable[[acb, int], acb]  # at radius*x, with so many bits
     count: int  # roots in the disc: proved
-    # Enclosures of x = s/radius, and how many roots each holds: one of those that mirror each other.
-    roots: tuple[tuple[acb, int], ...]
+    roots: tuple[tuple[acb, int], ...]  # enclosures of x = s/radius, one of mirror images, and their counts
     at_zero: int  # how many roots lie at 0
     zero_reach: float  # how far from 0 they may lie [rad/s]; 0 where that is where they are
     is_even: bool

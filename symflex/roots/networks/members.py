@@ -56,8 +56,7 @@ class Stiffness:
 class MemberBalls:
     """A member with numbers, at one precision."""
 
-    # dz/dx = (constant + lambda*linear) z, z = (u, p); arrays of balls, row by row.
-    constant: Sequence[Sequence[arb]]
+    constant: Sequence[Sequence[arb]]  # dz/dx = (constant + lambda*linear) z, z = (u, p), row by row
     linear: Sequence[Sequence[arb]]
     length: arb
     _pieces: dict[int, tuple[int, tuple[int, ...]]] = field(default_factory=dict, repr=False)

@@ -40,10 +40,8 @@ class NetworkMember:
     name: str
     system: tuple[tuple[Factored, ...], ...]  # rows of the matrix, even in s
     length: Factored
-    # Positions of the unknowns that move the start, and the end; None where it is held.
-    ends: tuple[int | None, ...]
-    # Of a member at an angle, whose system is in its own axes, the cosine and sine; else nothing.
-    direction: tuple[Factored, ...] = ()
+    ends: tuple[int | None, ...]  # unknowns that move the start, and the end; None where it is held
+    direction: tuple[Factored, ...] = ()  # cosine and sine of a member at an angle; else nothing
 
     @property
     def key(self) -> str:
@@ -63,8 +61,7 @@ class Network:
     # not motions and forces of nodes, or rates of them.
     driven: Mapping[int, Factored]
     read: Mapping[int, Factored]
-    # Powers of s in front of determinant, and of the determinant bordered by input and output.
-    below: int
+    below: int  # powers of s in front of determinant, and of that bordered by input and output
     above: int
 
     @property

@@ -44,8 +44,7 @@ class _SlowError(Exception):
 class Box:
     """A box that contains exactly one root of one factor, and what is known of the others there."""
 
-    # re and im: enclosures of the root [rad/s], exactly zero where symmetry proves that.
-    re: arb
+    re: arb  # re and im: enclosures of the root [rad/s], exactly zero where symmetry proves that
     im: arb
     reach: arb  # half the side of the box in which there is no other root of the factor [rad/s]
     exponent: int  # of the factor

@@ -46,8 +46,7 @@ MODES_LIMIT = 2000  # most modes of one search; ask for further ones by a band
 class Found:
     """What a search brought to light."""
 
-    # In the upper half-plane, for even functions in its right quadrant; both with the axes.
-    roots: tuple[Root, ...]
+    roots: tuple[Root, ...]  # in the upper half-plane, of even functions in its right quadrant, closed
     missing: int  # roots that were counted but not found
     cell: Cell | None = None  # what was searched
 

@@ -60,8 +60,7 @@ class Disc:
 class LevelPolynomial:
     """A real polynomial at the current working precision, with its derivative."""
 
-    # value and slope: the polynomial, its coefficients real balls, and its derivative.
-    value: acb_poly
+    value: acb_poly  # value and slope: the polynomial, its coefficients real balls, and its derivative
     slope: acb_poly
     degree: int  # of the polynomial, known exactly
 
