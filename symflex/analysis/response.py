@@ -55,15 +55,6 @@ def count_turns(
     """Return how many whole turns to add to ``np.angle(values)``, given all poles and zeros.
 
     Values are those at ``1j*omega``; entries that are 0 or not finite do not matter.
-
-    Examples
-    --------
-    >>> from symflex.roots import RootProblem, find_pole_zero_map
-    >>> triple = RootProblem.from_rationals([1, 3, 3, 1])  # (s + 1)^3
-    >>> found = find_pole_zero_map("y/u", triple, RootProblem.from_rationals([1]))
-    >>> omega = np.array([0.1, 10.0])
-    >>> count_turns(omega, (1j * omega + 1) ** -3, found)
-    array([ 0, -1])
     """
     order = _order_at_rest(roots)
     phase = order * np.pi / 2 * np.sign(omega) + _phase_of(roots.zeros, omega) - _phase_of(roots.poles, omega)

@@ -111,18 +111,6 @@ def energy_proof(
     any positive value. An ``output`` may have poles of its own, as ``x/(T*s + 1)`` has. Nothing is known with
     loss factors, parameters that depend on s, elements that are not of this program, fields beside elements
     or signals, or a value of the wrong sign.
-
-    >>> from symflex import pipeline
-    >>> text = '''
-    ... symflex = 1
-    ... parameters = { k = "2 N/m", m = "1 kg" }
-    ... elements.body = { type = "mass", at = "x", m = "m" }
-    ... elements.spring = { type = "spring", between = ["x", "ground"], k = "SIGNk" }
-    ... inputs.F = { force = "x" }
-    ... outputs.X = "x"
-    ... '''
-    >>> [energy_proof(pipeline.loads(text.replace("SIGN", sign))).reason for sign in ("", "-")]
-    ['passive, nothing supplies energy', '']
     """
     if model.imaginary:
         return EnergyProof()

@@ -164,17 +164,6 @@ def judge(
     left half-plane, unless ``unproved`` says why there may be more in the right half-plane or on the axis.
     ``proof`` says what proves that there are none in the open right half-plane, but maybe on the axis.
     With ``is_endless``, more hidden poles may lie on the axis.
-
-    Examples
-    --------
-    >>> from flint import arb
-    >>> from symflex.roots.root import Root
-    >>> pole = Root(arb(-1), arb(0), 1, on_imaginary_axis=False, is_real=True)
-    >>> rest = Root(arb(0), arb(0), 1, on_imaginary_axis=True, is_real=True)
-    >>> judge([pole]).sentence, judge([pole, rest]).sentence
-    ('stable', 'marginal, not asymptotically stable: a pole at 0')
-    >>> judge([pole], hidden=[rest]).headline
-    'stable, with a hidden pole at s = 0'
     """
     on_axis = [root for root in hidden if root.on_imaginary_axis]
     at_rest = count_roots(root for root in on_axis if root.is_zero)
@@ -466,14 +455,6 @@ def find_pole_zero_map(
     it. ``hidden`` are cancelled factors, each with its cause; all their roots are reported when the region is
     a number of modes, else those in the region. When the budget is exceeded, what was certified so far is
     returned. A root whose side of the boundary stays undecided after refinement counts as on the boundary.
-
-    Examples
-    --------
-    >>> from symflex.roots.problem import RootProblem
-    >>> poles, zeros = RootProblem.from_rationals([0, 0, 9, 0, 1]), RootProblem.from_rationals([4, 0, 1])
-    >>> found = find_pole_zero_map("x/F", poles, zeros, Modes(1), 3)
-    >>> [(root.decimal(3).im, root.multiplicity) for root in found.poles], found.certificate.counted
-    ([('0', 2), ('3.00', 1), ('-3.00', 1)], 6)
     """
     where = region if region is not None else Everything()
     whole = Everything() if isinstance(where, Modes) else where

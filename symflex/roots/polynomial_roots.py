@@ -32,11 +32,6 @@ def find_polynomial_roots(
 
     SF401 when a leading coefficient cannot be told from zero, SF404 when roots do not separate, SF506 when
     the time is over: ``found`` is a tuple of the roots proved until then.
-
-    >>> from symflex.roots.problem import RootProblem
-    >>> roots = find_polynomial_roots(RootProblem.from_rationals([25, 6, 1]), 5)
-    >>> [(root.decimal(5).re, root.decimal(5).im) for root in roots]
-    [('-3.0000', '4.0000'), ('-3.0000', '-4.0000')]
     """
     if digits < 1:
         raise ValueError(f"digits must be at least 1, not {digits}")

@@ -65,20 +65,7 @@ class ProbeSetting:
 
 
 class Probes:
-    """The test points of one transfer function; its values at them are found once.
-
-    >>> from symflex import pipeline
-    >>> model = pipeline.loads('''
-    ... symflex = 1
-    ... parameters = { a = {} }
-    ... inputs.u = {}
-    ... outputs.y = "u/(s^2 + a*s + 1)"
-    ... ''')
-    >>> (tf,) = pipeline.derive_all(model)
-    >>> probes = Probes(tf)
-    >>> len(probes.points), len(probes.values(64))
-    (8, 8)
-    """
+    """The test points of one transfer function; its values at them are found once."""
 
     def __init__(self, tf: AnyTransferFunction, kind: Kind = "drawn") -> None:
         self._tf, self._kind = tf, kind

@@ -422,20 +422,7 @@ class TangentPoint:
 
 @dataclass(frozen=True, eq=False)
 class Tangents:
-    """Evaluates what a transfer function is made of, to first order.
-
-    >>> from symflex import pipeline
-    >>> model = pipeline.loads('''
-    ... symflex = 1
-    ... parameters.a = "3"
-    ... inputs.u = {}
-    ... outputs.y = "u/(a^2 + 1)"
-    ... ''')
-    >>> tf = pipeline.derive_all(model)[0]
-    >>> tangents = Tangents(tf, {p.name: p.value for p in model.parameters})
-    >>> tangents.product(tf.den, tangents.along("a", acb(0)))
-    10.0000000000000 + 6.00000000000000*x + O(x^2)
-    """
+    """Evaluates what a transfer function is made of, to first order."""
 
     tf: TransferFunction  # with symbols
     values: Mapping[str, ExactValue]  # of all parameters that occur
