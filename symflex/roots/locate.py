@@ -487,13 +487,7 @@ class _Searched:
         if not isinstance(self.region, Modes) or not self._pair or not isfinite(self._pair[0].reached):
             return ""
         poles, zeros = self._pair
-        modes = (
-            "no modes were"
-            if not poles.modes
-            else "1 mode was"
-            if poles.modes == 1
-            else f"{poles.modes} modes were"
-        )
+        modes = {0: "no modes were", 1: "1 mode was"}.get(poles.modes, f"{poles.modes} modes were")
         up_to = [f"{exp(side.reached) / (2 * pi):g} Hz" if side.modes else "" for side in self._pair]
         said = f"; {modes} found" + (f" up to {up_to[0]}" if up_to[0] else "")
         if zeros.is_finite or zeros.reached >= poles.reached:

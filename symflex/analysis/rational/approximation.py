@@ -9,6 +9,7 @@ compares residues and stays finite, and is taken for the error at the pole.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -484,27 +485,15 @@ def _counted(title: str, roots: Sequence[mpmath.mpc]) -> str:
     return f"{INDENT}{title}: {len(roots) or 'none'}"
 
 
-def _unique(roots: Sequence[mpmath.mpc]) -> list[tuple[mpmath.mpc, int, bool]]:
-    """Return the roots of the upper half-plane, how often each occurs, and whether it is one of a pair."""
-    counts: dict[mpmath.mpc, int] = {}
-    for root in roots:
-        counts[root] = counts.get(root, 0) + 1
-    return [(root, n, root.imag != 0) for root, n in counts.items() if root.imag >= 0]
-
-
 def _root_rows(roots: Sequence[mpmath.mpc]) -> list[Row]:
-    if not roots:
-        return []
-    head = ("", "Re [rad/s]", "Im [rad/s]", "f [Hz]", "zeta")
-    return [head, *(_root_cells(*root) for root in _unique(roots))]
-
-
-def _root_cells(root: mpmath.mpc, count: int, paired: bool) -> tuple[str, str, str, str, str]:
-    size = abs(complex(root))
-    times = f"x{count}" if count > 1 else ""
-    im = ("+-" if paired else "") + _decimal(root.imag)
-    zeta = f"{-float(root.real) / size + 0:.6g}" if size else ""
-    return times, _decimal(root.real), im, f"{size / (2 * pi):.6g}", zeta
+    """Return a row per root in the upper half-plane: how often, where, its frequency and damping."""
+    rows: list[Row] = [("", "Re [rad/s]", "Im [rad/s]", "f [Hz]", "zeta")]
+    for root, count in Counter(root for root in roots if root.imag >= 0).items():
+        size, times = abs(complex(root)), f"x{count}" if count > 1 else ""
+        im = ("+-" if root.imag else "") + _decimal(root.imag)
+        zeta = f"{-float(root.real) / size + 0:.6g}" if size else ""
+        rows.append((times, _decimal(root.real), im, f"{size / (2 * pi):.6g}", zeta))
+    return rows if roots else []
 
 
 def _residue_rows(approximation: RationalApproximation) -> list[Row]:

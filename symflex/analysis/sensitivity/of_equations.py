@@ -116,7 +116,9 @@ def derivatives(
             for name in missing:
                 derivative = -pair.change(matrix.slope(moving.place, name)) / slope
                 slopes[name] = derivative if derivative.is_finite() else slopes[name]
-        missing = [n for n in missing if (x := slopes[n]) is None or not _is_enclosed(x, wanted)]
+        missing = [
+            n for n in missing if (x := slopes[n]) is None or not (x == 0 or x.rel_accuracy_bits() >= wanted)
+        ]
         if not missing:
             break
     return moving.place, slopes
@@ -130,7 +132,3 @@ def is_fixed_at_zero(at: EquationsAt, pair: tuple[str, str], root: Root, *, is_p
         size = len(cramer.entries) - is_pole
         orders.append(order_at_zero(cramer, size, root.multiplicity))
     return orders[0] is not None and orders[0] == orders[1]
-
-
-def _is_enclosed(value: acb, wanted: int) -> bool:
-    return bool(value == 0 or value.rel_accuracy_bits() >= wanted)

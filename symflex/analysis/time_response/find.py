@@ -230,10 +230,6 @@ def _answer(asked: Asked) -> Sampled:
     raise UncertifiedError(Diagnostic("SF810", message, None, "ask for a shorter time, or fewer digits"))
 
 
-def _by_partial_fractions(asked: Asked) -> Plan | Refused:
-    return partial(_of_lumped, asked) if asked.bound.is_rational else Refused()
-
-
 def _by_echoes(asked: Asked) -> Plan | Refused:
     if asked.quotient is None:
         return Refused("some waves change shape")
@@ -287,10 +283,8 @@ def _by_estimate(asked: Asked) -> Plan | Refused:
 
 
 WAYS = (
-    Way(
-        "hyperbolas", lambda asked: Refused() if asked.bound.sheets == 1 else partial(along_hyperbolas, asked)
-    ),
-    Way("partial fractions", _by_partial_fractions),
+    Way("hyperbolas", lambda a: Refused() if a.bound.sheets == 1 else partial(along_hyperbolas, a)),
+    Way("partial fractions", lambda a: partial(_of_lumped, a) if a.bound.is_rational else Refused()),
     Way("echoes", _by_echoes),
     Way("settled echoes", _by_settling),
     Way("wave echoes", _by_wave_echoes),
@@ -302,11 +296,9 @@ WAYS = (
 
 def _summed(asked: Asked, bounding: ModesBound, integrations: int) -> Sampled | Refused:
     modal_sum = summed(bounding, integrations, asked.times, asked.digits)
-    return (
-        Refused("the contributions of the modes do not decay fast enough")
-        if modal_sum is None
-        else modal_sum.sampled
-    )
+    if modal_sum is None:
+        return Refused("the contributions of the modes do not decay fast enough")
+    return modal_sum.sampled
 
 
 def _closely(
