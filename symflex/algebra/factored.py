@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import comb, lcm, prod
 from random import Random
-from typing import TYPE_CHECKING
 
 from flint import fmpz, fmpz_mpoly
 
@@ -24,11 +23,9 @@ from symflex.algebra.ring import (
     highest_degree,
     terms_of,
 )
+from symflex.algebra.sparse import Monomial
 from symflex.balls import Arithmetic, ball, raised
 from symflex.errors import BudgetError, Diagnostic
-
-if TYPE_CHECKING:
-    from symflex.algebra.sparse import Monomial
 
 
 @dataclass(frozen=True, slots=True, eq=False)

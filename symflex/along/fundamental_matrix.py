@@ -29,19 +29,35 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import ceil, comb, floor, inf, log2
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from flint import acb, arb, arb_poly
 
-from symflex.along.growth import bits_of, growth_begun, growth_of, growth_on, least_growth, legs_along
-from symflex.along.system import MinorsAlong, Number, Polynomial, RationalPart, polynomial_of, sequence_of
+from symflex.along.growth import (
+    Growth,
+    Leg,
+    bits_of,
+    growth_begun,
+    growth_of,
+    growth_on,
+    least_growth,
+    legs_along,
+)
+from symflex.along.system import (
+    Coefficients,
+    Lines,
+    MinorsAlong,
+    Number,
+    Polynomial,
+    RationalPart,
+    SingularBeginning,
+    VaryingSystem,
+    polynomial_of,
+    sequence_of,
+)
 from symflex.balls import current_bits, precision
 from symflex.budget import GB, spend
 from symflex.errors import BudgetError, Diagnostic
-
-if TYPE_CHECKING:
-    from symflex.along.growth import Growth, Leg
-    from symflex.along.system import Coefficients, Lines, SingularBeginning, VaryingSystem
 
 Derived = TypeVar("Derived", arb_poly, Polynomial)
 Matrix = list[list[Polynomial]]  # entries as polynomials in u

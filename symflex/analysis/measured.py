@@ -6,7 +6,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
 
 from symflex.analysis.response import evaluate, respond
 from symflex.data.fitting import Base, ResonanceFit, fit_resonances
@@ -20,10 +23,6 @@ from symflex.roots import Band
 from symflex.roots.locate import locate
 from symflex.transfer import BoundTransferFunction
 from symflex.transfer.of_model import derive_bound, pick_pairs
-
-if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
 
 
 def fit(measured: Sequence[MeasuredResponse], given: FitOptions) -> ResonanceFit:

@@ -25,7 +25,7 @@ from fractions import Fraction
 from functools import partial
 from itertools import pairwise
 from math import ceil, exp, inf, log, pi
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
 
 import numpy as np
 import numpy.typing as npt
@@ -44,9 +44,6 @@ from symflex.roots.locate import locate
 from symflex.roots.root import exact_fraction
 from symflex.transfer import AnyBoundFunction
 from symflex.transfer.nested_form import BoundNested
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
 
 
 def count_turns(

@@ -26,9 +26,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 from math import ceil, prod
-from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 from flint import acb, acb_poly, arb
 
 from symflex.analysis.time_response.delayed_terms import delayed_quotient
@@ -47,9 +47,6 @@ from symflex.roots.root import exact_fraction
 from symflex.state_space import not_rational
 from symflex.state_space.sampled import Sampling
 from symflex.transfer import BoundTransferFunction
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
 
 FIRST_DIGITS, LAST_DIGITS = 60, 4000
 TRIED_AT = acb(1.2345, 0.5432)  # where a function of z is compared: a pole there is a rare accident

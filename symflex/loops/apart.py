@@ -11,18 +11,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, NO_KERNELS, Factored
+from symflex.loops.loop import GainPolynomial
 from symflex.roots.locate import locate
 from symflex.roots.pole_zero_map import StabilityVerdict, count_right
 from symflex.roots.region import Modes
 from symflex.transfer import BoundTransferFunction
 from symflex.transfer.transfer_function import HiddenFactor
-
-if TYPE_CHECKING:
-    from symflex.loops.loop import GainPolynomial
-
 
 NONE = StabilityVerdict("stable", 0, certified=True)
 

@@ -18,9 +18,10 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
+import numpy.typing as npt
 
 from symflex.budget import entered_budget
 from symflex.errors import BudgetError, SymflexError
@@ -33,9 +34,6 @@ from symflex.roots.pole_zero_map import PoleZeroMap, StabilityVerdict
 from symflex.roots.region import Modes
 from symflex.roots.root import count_roots
 from symflex.transfer import bind
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
 
 SCHEMA = "symflex.stability_chart/1"
 SHOWN = 12  # regions in print; the others are in the JSON

@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial, reduce
 from math import inf, lcm
-from typing import TYPE_CHECKING
 
 from flint import arb, arb_series, fmpz_mpoly
 
@@ -21,15 +20,13 @@ from symflex.algebra import Ring, degree_in, irreducible_factors
 from symflex.balls import bits_for_digits, precision, value_at
 from symflex.budget import spend
 from symflex.errors import Diagnostic, SymflexError, UncertifiedError
+from symflex.loops.gain_functions import GainFunctions
+from symflex.loops.loop import GainPolynomial, Loop
 from symflex.loops.stability_map import Crossing, PoleCount
 from symflex.roots import PolynomialInS, RealConstant, Root, RootProblem, find_polynomial_roots
 from symflex.roots.pole_zero_map import count_right
 from symflex.roots.problem import problem_of
 from symflex.transfer import BoundTransferFunction
-
-if TYPE_CHECKING:
-    from symflex.loops.gain_functions import GainFunctions
-    from symflex.loops.loop import GainPolynomial, Loop
 
 W, K = 0, 1  # positions of omega squared and of the gain in the ring of E and O
 SPARE_DIGITS = 10

@@ -12,10 +12,10 @@ narrow as the requested digits; see :mod:`symflex.loops.boxes`.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
@@ -27,18 +27,13 @@ from symflex.loops.chart import StabilityChart, count_at, find_chart
 from symflex.loops.find import gain_margins
 from symflex.loops.loop import pick_gain
 from symflex.loops.stability_map import BOXES, Boundary, Crossing, GainInterval, PoleCount, StabilityMap
-from symflex.model import with_numbers
+from symflex.model import Model, ModelParameter, with_numbers
 from symflex.model.along import is_tapered
 from symflex.model.loss_factors import check_causal
 from symflex.options import StabilityOptions, gain_ends, share_of
+from symflex.transfer import Given
 from symflex.transfer.bind import read_values
 from symflex.transfer.of_model import assemble, derive_all
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
-    from symflex.model import Model, ModelParameter
-    from symflex.transfer import Given
 
 Interval = tuple[Ends, PoleCount]
 WIDER, WIDER_PART = 10, 2  # times of its value that a parameter, of signals or of parts, may have by default

@@ -11,16 +11,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 from flint import acb, arb, arb_series
 
 from symflex.balls import bits_for_digits, precision
 from symflex.budget import spend
 from symflex.loops.axis import BITS, FIRST_RATIO, NARROWEST, NEWTON_STEPS, joined, pieces
-
-if TYPE_CHECKING:
-    from symflex.loops.loop_function import LoopFunction
+from symflex.loops.loop_function import LoopFunction
 
 Weights = Callable[[arb], Sequence[arb_series]]
 

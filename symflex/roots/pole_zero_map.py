@@ -9,18 +9,15 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import inf, pi
-from typing import TYPE_CHECKING, Literal, Self
+from typing import Literal, Self
 
 from symflex.budget import entered_budget, spend
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.engines import POLYNOMIAL
 from symflex.roots.polynomial_roots import find_polynomial_roots, in_order
+from symflex.roots.problem import RootProblem
 from symflex.roots.region import Band, Everything, Mode, Modes, Position, Region
 from symflex.roots.root import ROUNDING, TOUCHING, Root, count_roots, groups, overlap
-
-if TYPE_CHECKING:
-    from symflex.roots.problem import RootProblem
-
 
 SCHEMA = "symflex.roots/1"
 REFINEMENTS = 4  # doublings of the digits before a root counts as on the boundary

@@ -6,16 +6,13 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from flint import arb
 
 from symflex.balls import ball, precision
 from symflex.errors import Diagnostic, UsageError
 from symflex.options import RootsOptions, band_ends, frequency
-
-if TYPE_CHECKING:
-    from symflex.roots.root import Root
+from symflex.roots.root import Root
 
 
 class Position(Enum):

@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat
 
@@ -19,11 +18,9 @@ from symflex.algebra import LAPLACE, NO_KERNELS, Dispersion, Factored, Polynomia
 from symflex.balls import Arithmetic, at_centre, current_bits, plan
 from symflex.model.along import varies_along_x
 from symflex.transfer.against_equations import Agreement
+from symflex.transfer.bound import BoundTransferFunction
 from symflex.transfer.direct_solve import GeneratorValues, Point, carried
 from symflex.transfer.transfer_function import ClosedForm, TransferFunction
-
-if TYPE_CHECKING:
-    from symflex.transfer.bound import BoundTransferFunction
 
 
 def agreement(tf: TransferFunction | BoundTransferFunction) -> Agreement:

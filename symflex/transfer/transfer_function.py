@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence, Set
 from dataclasses import dataclass, field, fields
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 from flint import acb, fmpz_mpoly
 
@@ -18,11 +18,8 @@ from symflex.equations.elimination import Closure
 from symflex.expressions import Name, names
 from symflex.model import Input, Model, ModelParameter, Output
 from symflex.quantities import Dimension, unit_of
-
-if TYPE_CHECKING:
-    from symflex.transfer.against_equations import ModelSolve
-    from symflex.transfer.expansion import Opening
-
+from symflex.transfer.against_equations import ModelSolve
+from symflex.transfer.expansion import Opening
 
 LARGE = 50_000  # expanded terms from which a transfer function is opened only when that is asked for
 

@@ -16,9 +16,9 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from functools import cached_property
 from math import tau
-from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 from flint import acb, fmpz_mpoly
 
 from symflex.analysis.response import real_numbers
@@ -34,9 +34,6 @@ from symflex.state_space.numeric import BoundStateSpace, Rounding, bound_state_s
 from symflex.state_space.popov import FieldElement
 from symflex.transfer import AnyTransferFunction, BoundTransferFunction, TransferFunction
 from symflex.transfer.bound import Enclosed
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
 
 TRANSFER_FUNCTION, STATE_SPACE, ZEROS_POLES_GAIN = "transfer-function", "state-space", "zeros-poles-gain"
 CONTROL_FORMS = (TRANSFER_FUNCTION, STATE_SPACE)

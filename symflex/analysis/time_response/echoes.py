@@ -18,7 +18,7 @@ from __future__ import annotations
 import heapq
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from flint import acb, acb_poly, arb, arb_poly
 
@@ -38,6 +38,7 @@ from symflex.analysis.time_response.partial_fractions import (
     partial_fractions,
     values_of,
 )
+from symflex.analysis.time_response.sample_times import SampleTimes
 from symflex.analysis.time_response.sampled import Gathered, Sampled
 from symflex.balls import bits_for_digits, precision
 from symflex.budget import spend
@@ -45,9 +46,6 @@ from symflex.errors import Diagnostic, UncertifiedError
 from symflex.roots import Root
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.problem import RootProblem
-
-if TYPE_CHECKING:
-    from symflex.analysis.time_response.sample_times import SampleTimes
 
 
 class TooManyEchoesError(Exception):

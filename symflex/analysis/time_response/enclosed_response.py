@@ -6,19 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from operator import sub
-from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 from flint import arb
 
+from symflex.analysis.time_response.sampled import ImpulseAt, JumpAt, PartialSum
 from symflex.errors import Diagnostic, UsageError
 from symflex.print.text import aligned, broken
 from symflex.roots.root import RootDecimals, decimals, figure
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
-
-    from symflex.analysis.time_response.sampled import ImpulseAt, JumpAt, PartialSum
 
 SCHEMA = "symflex.respond/1"
 INTEGRATIONS = {"impulse": 0, "step": 1, "ramp": 2}  # how often the unit impulse is integrated

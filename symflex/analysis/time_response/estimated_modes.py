@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
@@ -18,6 +17,7 @@ from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.function_size import Annulus, ring_about
 from symflex.analysis.time_response.modal import BITS, at_origin, term_of
 from symflex.analysis.time_response.partial_fractions import ExponentialTerm, values_of
+from symflex.analysis.time_response.sample_times import SampleTimes
 from symflex.analysis.time_response.sampled import PartialSum, Sampled
 from symflex.balls import precision, precisions
 from symflex.budget import spend
@@ -28,9 +28,6 @@ from symflex.roots.distributed.side import accumulation_points
 from symflex.roots.locate import locate
 from symflex.roots.region import Modes
 from symflex.transfer import AnyBoundFunction
-
-if TYPE_CHECKING:
-    from symflex.analysis.time_response.sample_times import SampleTimes
 
 
 def estimated(bound: AnyBoundFunction, integrations: int, times: SampleTimes) -> Sampled:

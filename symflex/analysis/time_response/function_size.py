@@ -13,13 +13,14 @@ from dataclasses import dataclass
 from functools import cached_property, partial
 from itertools import pairwise
 from math import inf, pi
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from flint import acb, acb_series, arb
 
 from symflex.algebra.exponential_sum import REAL, Exponent
 from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.partial_fractions import ExponentialTerm
+from symflex.analysis.time_response.sample_times import SampleTimes
 from symflex.analysis.time_response.sampled import ZERO
 from symflex.balls import UndecidedError, at_centre, ball, covered, precision
 from symflex.budget import spend
@@ -29,9 +30,6 @@ from symflex.roots.counting.winding import Cell
 from symflex.roots.functions.exponential_values import ExponentialValues, exponential_sums
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.transfer import BoundTransferFunction
-
-if TYPE_CHECKING:
-    from symflex.analysis.time_response.sample_times import SampleTimes
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,26 +25,24 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from flint import acb, arb
 
 from symflex.algebra import Factored, degree_in
+from symflex.algebra.exponential_sum import Polynomial
 from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.function_size import ModesBound, Rest
 from symflex.analysis.time_response.partial_fractions import ExponentialTerm
+from symflex.analysis.time_response.sample_times import SampleTimes
 from symflex.analysis.time_response.sampled import Refused
 from symflex.balls import precision
 from symflex.budget import spend
+from symflex.roots import Root
 from symflex.roots.axes.axis_function import IMAGINARY, AxisFunction, bits_of
 from symflex.roots.axes.harmonic_sum import UNITS, lossless_function
 from symflex.roots.functions.kernel_function import KernelFunction
-
-if TYPE_CHECKING:
-    from symflex.algebra.exponential_sum import Polynomial
-    from symflex.analysis.time_response.sample_times import SampleTimes
-    from symflex.roots import Root
-    from symflex.transfer import BoundTransferFunction
+from symflex.transfer import BoundTransferFunction
 
 BITS = 2 * bits_of(EFFORT.pole_digits)  # precision of every value
 ANYWHERE = 0.7310585786  # turns of theta, as a rule without a root, where the constant in front is read

@@ -27,20 +27,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf, log, pi
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from flint import arb
 
 from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.function_size import BoundBySize, Rest, SizeOfExponentials
+from symflex.analysis.time_response.sample_times import SampleTimes
 from symflex.analysis.time_response.sampled import ZERO, Refused
 from symflex.balls import ball, precision
 from symflex.roots.distributed.far_out import SECTORS, TILTED, FunctionFarOut
 from symflex.roots.functions.kernel_function import KernelFunction
-
-if TYPE_CHECKING:
-    from symflex.analysis.time_response.sample_times import SampleTimes
-    from symflex.transfer import BoundTransferFunction
+from symflex.transfer import BoundTransferFunction
 
 SLOPE = 0.4999  # decay on a ray at 120 degrees, over abs(s): no more than one half
 FAR = 1e4  # largest ratio of least radii at which a ray at 120 degrees is preferred to the axis

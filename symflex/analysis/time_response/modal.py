@@ -16,16 +16,17 @@ from __future__ import annotations
 from cmath import sqrt as csqrt
 from collections.abc import Callable, Mapping
 from math import log, pi
-from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
 from symflex.analysis.rational.laurent import LaurentSeries, PrincipalPart, expand_at_zero, residues_at
 from symflex.analysis.time_response.effort import EFFORT
+from symflex.analysis.time_response.function_size import Annulus, ModesBound, Ring
 from symflex.analysis.time_response.lossless_modes import lossless_modes
 from symflex.analysis.time_response.lossy_modes import lossy_bound
 from symflex.analysis.time_response.partial_fractions import ExponentialTerm, values_of
 from symflex.analysis.time_response.passive_modes import passive_bound
+from symflex.analysis.time_response.sample_times import SampleTimes
 from symflex.analysis.time_response.sampled import PartialSum, Refused
 from symflex.balls import bits_for_digits, precision
 from symflex.errors import BudgetError, UncertifiedError
@@ -40,10 +41,6 @@ from symflex.roots.polynomial_roots import in_order
 from symflex.roots.region import Modes
 from symflex.roots.root import overlap
 from symflex.transfer import AnyBoundFunction, BoundTransferFunction
-
-if TYPE_CHECKING:
-    from symflex.analysis.time_response.function_size import Annulus, ModesBound, Ring
-    from symflex.analysis.time_response.sample_times import SampleTimes
 
 SEARCHED_TOO_LONG = "SF505"  # of a search that ends by itself; the user's own budgets end all
 BITS = bits_for_digits(2 * EFFORT.pole_digits)  # precision of sums

@@ -20,18 +20,15 @@ from dataclasses import dataclass, replace
 from functools import partial
 from itertools import zip_longest
 from math import factorial, prod
-from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, acb_series, arb, arb_mat
 
 from symflex.analysis.rational.laurent import principal_part
+from symflex.analysis.time_response.sample_times import SampleTimes
 from symflex.balls import raised, series_quotient, series_terms
 from symflex.roots import Root
 from symflex.transfer import BoundTransferFunction
 from symflex.transfer.bound import EnclosedTransferFunction
-
-if TYPE_CHECKING:
-    from symflex.analysis.time_response.sample_times import SampleTimes
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,7 +29,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import pi
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from flint import acb, arb
 
@@ -45,6 +45,7 @@ from symflex.analysis.explanation.coordinates import (
 )
 from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.function_size import BoundBySize, Rest, SizeOfExponentials
+from symflex.analysis.time_response.sample_times import SampleTimes
 from symflex.analysis.time_response.sampled import Refused
 from symflex.balls import ball, precision
 from symflex.expressions import Attribute, Name, Negative, Number, Sum, substitute
@@ -57,9 +58,6 @@ from symflex.roots.passivity import energy_proof
 from symflex.transfer import BoundTransferFunction
 from symflex.transfer.bind import bind
 from symflex.transfer.of_model import assemble, derive_all
-
-if TYPE_CHECKING:
-    from symflex.analysis.time_response.sample_times import SampleTimes
 
 STEP, RAMP = 1, 2  # impulses, integrated so often
 OUTPUT, INPUT = "displacement", "reaction"  # names in a model whose names begin differently

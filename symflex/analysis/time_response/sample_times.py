@@ -14,9 +14,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from math import isqrt, pi
-from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 from flint import acb, arb
 
 from symflex.analysis.response import real_numbers, roots_if_found
@@ -25,9 +25,6 @@ from symflex.errors import Diagnostic, UsageError
 from symflex.options import exact
 from symflex.roots import PoleZeroMap
 from symflex.transfer import AnyBoundFunction
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
 
 MOST_TIMES = 1_000_000  # as many lines as a file of measured data may have
 ROUNDING = 4 * 2.0**-53  # what numpy.linspace may be off by, of the last time: twice a product and a sum

@@ -5,17 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from flint import arb
 
 from symflex.analysis.time_response.delayed_terms import DelayedQuotient, delayed_quotient
+from symflex.analysis.time_response.partial_fractions import ExponentialTerm
+from symflex.analysis.time_response.sample_times import SampleTimes
 from symflex.transfer import BoundTransferFunction
-
-if TYPE_CHECKING:
-    from symflex.analysis.time_response.partial_fractions import ExponentialTerm
-    from symflex.analysis.time_response.sample_times import SampleTimes
-
 
 ZERO: Final = arb(0)
 

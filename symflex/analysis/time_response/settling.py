@@ -17,7 +17,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, arb, arb_poly
 
@@ -26,6 +25,7 @@ from symflex.analysis.time_response.echoes import earliest, echoed, echoes, term
 from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.modal import proved_at_origin, term_at
 from symflex.analysis.time_response.partial_fractions import ExponentialTerm, values_of
+from symflex.analysis.time_response.sample_times import SampleTimes
 from symflex.analysis.time_response.sampled import Sampled
 from symflex.balls import UndecidedError, bits_for_digits, covered, precision
 from symflex.budget import spend
@@ -35,9 +35,6 @@ from symflex.roots.locate import locate
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.problem import RootProblem
 from symflex.transfer import BoundTransferFunction
-
-if TYPE_CHECKING:
-    from symflex.analysis.time_response.sample_times import SampleTimes
 
 
 @dataclass(frozen=True, slots=True)

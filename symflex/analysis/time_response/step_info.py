@@ -19,7 +19,7 @@ import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from flint import acb, arb
 
@@ -32,6 +32,7 @@ from symflex.analysis.time_response.partial_fractions import (
     partial_fractions,
 )
 from symflex.analysis.time_response.sample_times import SampleTimes, default_until
+from symflex.analysis.time_response.sampled import PartialSum
 from symflex.analysis.time_response.settling import late_response, pieces_of
 from symflex.balls import bits_for_digits, precision
 from symflex.budget import spend
@@ -42,9 +43,6 @@ from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.problem import problem_of
 from symflex.roots.root import figure, real_json
 from symflex.transfer import AnyBoundFunction, BoundTransferFunction
-
-if TYPE_CHECKING:
-    from symflex.analysis.time_response.sampled import PartialSum
 
 RISE = (0.1, 0.9)  # shares of the final value between which the rise time is counted
 SETTLED = 0.02  # share of the final value within which a response has settled

@@ -21,7 +21,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from flint import acb, acb_series, arb, arb_poly, arb_series
 
@@ -30,15 +30,13 @@ from symflex.algebra.exponential_sum import ExponentialSum, arguments_of, expone
 from symflex.analysis.time_response.delayed_terms import NO_DELAY, Delay, DelayReader, later, sum_of
 from symflex.analysis.time_response.echoes import TooManyEchoesError, arriving, check_order, earliest
 from symflex.analysis.time_response.effort import EFFORT
+from symflex.analysis.time_response.sample_times import SampleTimes
 from symflex.analysis.time_response.sampled import Gathered, Sampled
 from symflex.balls import Value, at_centre, ball, bits_for_digits, precision, series_terms
 from symflex.budget import spend
 from symflex.roots.functions.exponential_values import ExponentialValues
 from symflex.roots.problem import polynomial_in_s
 from symflex.transfer import BoundTransferFunction
-
-if TYPE_CHECKING:
-    from symflex.analysis.time_response.sample_times import SampleTimes
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import cycle, islice
 from math import exp, inf, log, pi
-from typing import TYPE_CHECKING
 
 import numpy as np
 from flint import arb
@@ -31,10 +30,8 @@ from symflex.roots.axes.axis_function import (
 )
 from symflex.roots.axes.harmonic_sum import LosslessFunction, lossless_function
 from symflex.roots.counting.winding import Cell, RootOnPathError
+from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.root import Root
-
-if TYPE_CHECKING:
-    from symflex.roots.functions.kernel_function import KernelFunction
 
 GRID = 0.8  # largest change of a phase [rad] from one sample to the next
 BATCH = 4096  # samples taken at once

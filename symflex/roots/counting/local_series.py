@@ -14,16 +14,12 @@ from __future__ import annotations
 from contextlib import suppress
 from dataclasses import dataclass, field
 from math import ceil, inf, isfinite, log
-from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, arb
 
 from symflex.balls import UndecidedError, covered, precision
+from symflex.roots.functions.entire import Entire
 from symflex.roots.functions.kernel_function import ROOM, angle
-
-if TYPE_CHECKING:
-    from symflex.roots.functions.entire import Entire
-
 
 TERMS = 16  # coefficients that are computed; those beyond are bounded
 SHRUNK = 2.0**-6  # radius of the circle where values are taken, over that where they are bounded

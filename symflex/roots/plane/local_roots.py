@@ -14,17 +14,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import ceil, inf, log2
-from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
 from symflex.balls import bits_for_digits, precision, precisions, stays_inside
 from symflex.roots.counting.local_series import BITS_A_POINT, REACH, SERIES_BITS, SERIES_POINTS, local_series
+from symflex.roots.functions.entire import Entire
 from symflex.roots.root import GUARD_BITS, Root
-
-if TYPE_CHECKING:
-    from symflex.roots.functions.entire import Entire
-
 
 LEAST_BITS = 96  # least precision of a box, whatever digits are wanted
 BOX_SHARE = 0.4  # the box is so many of the bits smaller than the root is large

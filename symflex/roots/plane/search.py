@@ -10,7 +10,6 @@ from cmath import exp, pi
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
-from typing import TYPE_CHECKING
 
 from flint import acb
 
@@ -18,12 +17,9 @@ from symflex.balls import precision
 from symflex.budget import entered_budget
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.counting.winding import RING, Cell, RootOnPathError, Winding
+from symflex.roots.functions.entire import Entire
 from symflex.roots.plane.local_roots import is_branched, prove_simple, prove_together
 from symflex.roots.root import Root, count_modes
-
-if TYPE_CHECKING:
-    from symflex.roots.functions.entire import Entire
-
 
 MARGIN = 0.03  # how far beyond the axes cells reach [rad], so that no side lies on a row of roots
 RIGHT_HALF = 1.3  # angle of the first cut across a half-plane [rad]: to the right of lightly damped roots

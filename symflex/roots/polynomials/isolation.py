@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from itertools import chain
-from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, arb
 
@@ -24,9 +23,7 @@ from symflex.roots.polynomials.discs import (
     middle_of,
     with_mirrors,
 )
-
-if TYPE_CHECKING:
-    from symflex.roots.problem import PolynomialInS
+from symflex.roots.problem import PolynomialInS
 
 Goal = Callable[[acb], arb]
 
