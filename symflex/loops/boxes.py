@@ -21,13 +21,13 @@ from math import inf, isfinite
 
 from flint import acb, acb_series, arb, fmpz_mpoly
 
-from symflex.algebra import LAPLACE, Factored
+from symflex.algebra import LAPLACE
 from symflex.balls import Value, at_centre, ball, current_bits, precision
 from symflex.budget import spend
 from symflex.expressions import names_among
 from symflex.model import ExactValue, Model
 from symflex.roots.distributed.far_out import right_tail
-from symflex.roots.functions.exponential_values import ExponentialValues, Place, Summed, exponential_sums
+from symflex.roots.functions.exponential_values import ExponentialValues, Place, Summed, sums_of
 from symflex.roots.functions.kernel_function import KernelFactors
 from symflex.transfer import BoundTransferFunction, TransferFunction
 from symflex.transfer.enclose import constant_tangent, enclosure, first_order
@@ -249,8 +249,7 @@ class CharacteristicFunction:
     def sums(self, tf: TransferFunction, polynomials: Sequence[fmpz_mpoly]) -> Summed | None:
         """Return factors of a transfer function as sums of exponentials; None without a formula for them."""
         if id(tf) not in self._summed:
-            value = Factored(tf.ratio.ring, Fraction(1), tuple((f, 1) for f in polynomials))
-            self._summed[id(tf)] = exponential_sums(value, tf.kernels)
+            self._summed[id(tf)] = sums_of(tf.ratio.ring, polynomials, tf.kernels)
         return self._summed[id(tf)]
 
     @cached_property

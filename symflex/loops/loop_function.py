@@ -18,10 +18,9 @@ from math import lcm
 from flint import acb, acb_series, arb, fmpz_mpoly
 
 from symflex.algebra import Factored
-from symflex.algebra.exponential_sum import Argument, ExponentialSum, arguments_of, exponential_sum
 from symflex.balls import Value, expansion, precision
 from symflex.loops.axis import LoopAtOrigin, loop_at_origin
-from symflex.roots.functions.exponential_values import ExponentialValues
+from symflex.roots.functions.exponential_values import ExponentialValues, Summed, sums_of
 from symflex.roots.functions.kernel_function import KernelFactors
 from symflex.transfer import BoundTransferFunction
 
@@ -85,19 +84,9 @@ class LoopFunction:
         return self.a, self.b, *self.others
 
     @cached_property
-    def arguments(self) -> tuple[Argument, ...]:
-        """What the exponentials are taken of."""
-        return arguments_of(self.bound.kernels) or ()
-
-    @cached_property
-    def sums(self) -> tuple[ExponentialSum, ...] | None:
+    def _sums(self) -> Summed | None:
         """The parts as sums of exponentials, ``None`` where wavenumbers have no formula."""
-        if arguments_of(self.bound.kernels) is None:
-            return None
-        ring, kernels = self.bound.ratio.ring, self.bound.kernels
-        sums = [exponential_sum(ring, kernels, self.arguments, f) for f in self.parts]
-        known = tuple(each for each in sums if each is not None)
-        return known if len(known) == len(sums) else None
+        return sums_of(self.bound.ratio.ring, self.parts, self.bound.kernels)
 
     @cached_property
     def _evaluators(self) -> dict[int, ExponentialValues | KernelFactors]:
@@ -108,11 +97,9 @@ class LoopFunction:
         if bits not in self._evaluators:
             with precision(bits):
                 kernels = self.bound.kernel_values()
-            self._evaluators[bits] = (
-                KernelFactors(kernels, self.parts)
-                if self.sums is None
-                else ExponentialValues(kernels, self.arguments, tuple((f, 1) for f in self.sums))
-            )
+            own = self._sums
+            plain = KernelFactors(kernels, self.parts)
+            self._evaluators[bits] = plain if own is None else ExponentialValues(kernels, *own)
         return self._evaluators[bits]
 
     @property

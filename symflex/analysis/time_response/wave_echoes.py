@@ -26,7 +26,7 @@ from typing import TypeVar
 from flint import acb, acb_series, arb, arb_poly, arb_series
 
 from symflex.algebra import Dispersion, Factored, degree_in
-from symflex.algebra.exponential_sum import ExponentialSum, arguments_of, exponential_sum
+from symflex.algebra.exponential_sum import ExponentialSum, arguments_of
 from symflex.analysis.time_response.delayed_terms import NO_DELAY, Delay, DelayReader, later, sum_of
 from symflex.analysis.time_response.echoes import TooManyEchoesError, arriving, check_order, earliest
 from symflex.analysis.time_response.effort import EFFORT
@@ -34,7 +34,7 @@ from symflex.analysis.time_response.sample_times import SampleTimes
 from symflex.analysis.time_response.sampled import Gathered, Sampled
 from symflex.balls import Value, at_centre, ball, bits_for_digits, precision, series_terms
 from symflex.budget import spend
-from symflex.roots.functions.exponential_values import ExponentialValues
+from symflex.roots.functions.exponential_values import ExponentialValues, exponential_sums
 from symflex.roots.problem import polynomial_in_s
 from symflex.transfer import BoundTransferFunction
 
@@ -320,13 +320,10 @@ def wave_quotient(bound: BoundTransferFunction) -> WaveQuotient | None:
     reader = DelayReader.of(bound, arguments, slowness)
     if reader is None or reader.decays:
         return None
-    sums = []
-    for factor, exponent in bound.ratio.factors:
-        terms = exponential_sum(bound.ratio.ring, bound.kernels, arguments, factor)
-        if terms is None or any(b for e in terms.terms for _, _, b in e):
-            return None
-        sums.append((terms, exponent))
-    return WaveQuotient(bound, reader, tuple(sums))
+    summed = exponential_sums(bound.ratio, bound.kernels)
+    if summed is None or any(b for terms, _ in summed[1] for e in terms.terms for _, _, b in e):
+        return None
+    return WaveQuotient(bound, reader, summed[1])
 
 
 def _squared_slowness(bound: BoundTransferFunction, law: Dispersion) -> Factored | None:

@@ -19,10 +19,10 @@ from math import gcd, inf, sqrt
 from flint import acb, acb_poly, arb, fmpz_mpoly
 
 from symflex.algebra import LAPLACE, Dispersion, Factored, Ring, by_powers, degree_in, summed, terms_of
-from symflex.algebra.exponential_sum import REAL, Exponent, arguments_of, exponential_sum
+from symflex.algebra.exponential_sum import REAL, Exponent, arguments_of
 from symflex.balls import at_centre, ball, precision
 from symflex.budget import spend
-from symflex.roots.functions.exponential_values import ExponentialValues, Valued
+from symflex.roots.functions.exponential_values import ExponentialValues, Valued, sums_of
 from symflex.roots.functions.kernel_function import SINGLE, TWINS
 from symflex.roots.pole_zero_map import WITHOUT_END
 from symflex.transfer import BoundTransferFunction, coefficients_in_s
@@ -243,17 +243,15 @@ def _sum_far_out(
 ) -> _SumFarOut | str:
     """Return the sum of polynomials times their scales; or why it is not known far out."""
     table = bound.kernels
-    arguments = arguments_of(table)
-    if arguments is None:
+    if arguments_of(table) is None:
         return NO_FORMULA
     if any(law.kind not in (*SINGLE, "exponential") for law in table.dispersions):
         return TWO_WAVENUMBERS
-    sums = [exponential_sum(bound.ratio.ring, table, arguments, f) for f in polynomials]
-    known = [terms for terms in sums if terms is not None]
-    if len(known) < len(sums):
+    summed = sums_of(bound.ratio.ring, polynomials, table)
+    if summed is None:
         return TOO_MANY
     kernels = bound.kernel_values()
-    values = ExponentialValues(kernels, arguments, tuple((terms, 1) for terms in known))
+    values = ExponentialValues(kernels, *summed)
     return _SumFarOut(kernels, values, tuple(scales), table.dispersions, sectors, bound.sheets)
 
 
@@ -447,18 +445,16 @@ def axis_tail(bound: BoundTransferFunction, part: Factored, start: float) -> flo
         Cantilever with a dashpot:  EI k^3 (1 + cosh cos) + s b (cosh sin - sinh cos), of k l
         k -> inf                    cos(k l) = 0 and sin(k l) - cos(k l) = 0: impossible
     """
-    arguments, radius = arguments_of(bound.kernels), start
+    radius = start
     with precision(BITS):
         kernels = bound.kernel_values()
         for factor in (f for f, exponent in part.factors if exponent > 0):
-            if arguments is None or radius == inf or not _is_mirrored(bound, factor):
+            if radius == inf or not _is_mirrored(bound, factor):
                 return inf
-            together = _together(bound.ratio.ring, factor)
-            sums = [exponential_sum(bound.ratio.ring, bound.kernels, arguments, each) for each in together]
-            known = tuple((each, 1) for each in sums if each is not None)
-            if len(known) < len(sums):
+            together = sums_of(bound.ratio.ring, _together(bound.ratio.ring, factor), bound.kernels)
+            if together is None:
                 return inf
-            function = _SumsOnAxis(ExponentialValues(kernels, arguments, known))
+            function = _SumsOnAxis(ExponentialValues(kernels, *together))
             radius = _least(radius, function.have_no_root) or inf
     return radius
 

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from fractions import Fraction
 from functools import cached_property
 from math import inf
 
-from flint import acb, acb_mat, acb_series, arb
+from flint import acb, acb_mat, acb_series, arb, fmpz_mpoly
 
-from symflex.algebra import Factored, KernelTable
+from symflex.algebra import Factored, KernelTable, Ring
 from symflex.algebra.exponential_sum import (
     REAL,
     Amplitude,
@@ -46,6 +47,11 @@ def exponential_sums(value: Factored, table: KernelTable) -> Summed | None:
             return None
         sums.append((terms, exponent))
     return arguments, tuple(sums)
+
+
+def sums_of(ring: Ring, polynomials: Sequence[fmpz_mpoly], table: KernelTable) -> Summed | None:
+    """Return the same of polynomials, each with the exponent 1."""
+    return exponential_sums(Factored(ring, Fraction(1), tuple((f, 1) for f in polynomials)), table)
 
 
 @dataclass(frozen=True, eq=False)
