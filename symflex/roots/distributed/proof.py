@@ -116,7 +116,7 @@ class Count:
         return Proof(counted + (count_roots(at_zero) if is_disc else 0), count)
 
     def right(self, high: float, angle: float = pi / 2) -> int:
-        """Return how many roots are right of the axis, or an ``angle``, with ln(abs(s)) below ``high``."""
+        """Return how many roots are in the right half-plane, or a sector, with ln(abs(s)) below ``high``."""
         winding = CertifiedWinding(self.winding.function, tries_series=True)
         low = min(winding.smallest(pi, self.holes), high - 1.0)
         if winding.count_within(low, pi) != self.order:
