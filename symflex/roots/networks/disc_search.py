@@ -44,7 +44,7 @@ class DiscSide:
 
     series: DiscSeries
     value: Callable[[acb, int], acb]  # at radius*x, with so many bits
-    count: int  # of roots in the disc, which is proved
+    count: int  # roots in the disc, proved to be all
     roots: tuple[tuple[acb, int], ...]  # enclosures of x = s/radius, one of mirror images, and their counts
     at_zero: int  # how many roots lie at 0
     zero_reach: float  # how far from 0 they may lie [rad/s]; 0 where that is where they are
