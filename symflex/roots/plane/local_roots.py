@@ -205,17 +205,15 @@ GROWTH = 100  # factor on a disc without other roots next to it, and on one that
 SHRINKINGS = 5  # shrinkings of a disc until no other root is next to it
 WIDER = 5  # radius of a disc that contains one moved to an axis, in radii of that
 DIGITS_A_SHRINKING = 2  # the logarithm of GROWTH
-BRANCH_BITS = 128  # precision of the test whether wavenumbers have branches
 
 
 def prove_together(
-    function: Entire, s: acb, within: arb, digits: int, count: int, *, even: bool, is_close: bool = False
+    function: Entire, s: acb, within: arb, digits: int, count: int, *, even: bool
 ) -> Root | None:
     """Return roots next to a point as one, in a disc that contains so many; ``None`` where none is proved.
 
     The point is exact. ``count`` is of the roots of ``function**function.power``, with multiplicity; the disc
-    stays below the exact radius ``within`` [rad/s]. ``even`` roots mirror each other in the imaginary axis;
-    those that are ``is_close`` have to agree in all digits wanted.
+    stays below the exact radius ``within`` [rad/s]. ``even`` roots mirror each other in the imaginary axis.
     """
     wanted = bits_for_digits(digits + DIGITS_A_SHRINKING * SHRINKINGS)
     most = min(SERIES_POINTS + count * wanted // BITS_A_POINT, MOST_POINTS)
@@ -240,7 +238,7 @@ def prove_together(
                 if series.count(size) == count == series.count(size * GROWTH):
                     return in_disc(centre, size, count // function.power, even=even, real=function.is_real)
                 size = (size / GROWTH).mid()
-            while not (last or is_close) and size < within:
+            while not last and size < within:
                 if series.count(size) == count:
                     place = snapped(centre, size, even=even, real=function.is_real)
                     if place != centre and series.count(WIDER * size) == count:
@@ -250,13 +248,6 @@ def prove_together(
                 size = (size * GROWTH).mid()
             centre = series.middle(count) or centre
     return None
-
-
-def is_branched(function: Entire, s: acb, within: arb) -> bool:
-    """Tell whether a disc may contain a point where wavenumbers have branches."""
-    with precision(BRANCH_BITS):
-        disc = s + acb(arb(0, within), arb(0, within))
-    return not all(value.is_finite() for value, _, _ in function.enclosed(disc, BRANCH_BITS))
 
 
 def snapped(s: acb, close: arb, *, even: bool, real: bool = True) -> acb:

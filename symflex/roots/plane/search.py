@@ -18,7 +18,7 @@ from symflex.budget import entered_budget
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.counting.winding import RING, Cell, RootOnPathError, Winding
 from symflex.roots.functions.entire import Entire
-from symflex.roots.plane.local_roots import is_branched, prove_simple, prove_together
+from symflex.roots.plane.local_roots import prove_simple, prove_together
 from symflex.roots.root import Root, count_modes
 
 MARGIN = 0.03  # how far beyond the axes cells reach [rad], so that no side lies on a row of roots
@@ -205,14 +205,7 @@ class RootSearch:
         if count <= self.function.power:
             # No box about it: perhaps a wavenumber vanishes there, which has two branches.
             return None if root is not None or cell.size > NEAR else self._about(s, count)
-        # Several roots, which cuts part, unless all are where wavenumbers meet.
-        with precision(FIRST_BITS):
-            radius = (s.abs_upper() * NEIGHBOURS).mid()
-        if not is_branched(self.function, s, radius):
-            return None
-        even = self.function.is_mirrored
-        one = prove_together(self.function, s, radius, self.digits, count, even=even, is_close=True)
-        return [one] if one is not None and _is_in(cell, one) else None
+        return None  # several roots, which cuts part
 
     def _as_one(self, cell: Cell, count: int) -> list[Root] | None:
         """Return the roots of a cell too small to be cut as one, in a disc proved to hold them."""

@@ -8,7 +8,7 @@ from itertools import product
 from flint import acb, arb
 
 from symflex.balls import precision
-from symflex.roots.plane.local_roots import BOX_SHARE, SMALLER, _is_alone, is_branched, prove_simple
+from symflex.roots.plane.local_roots import BOX_SHARE, SMALLER, _is_alone, prove_simple
 from tests.unit.roots.known_functions import KnownFunction
 
 
@@ -145,14 +145,3 @@ def test_a_root_is_alone_where_the_series_counts_no_other_within_some_radii():
             second = acb(2, 3) + acb(0, 1) * radius * SMALLER * arb(neighbour)
         function = KnownFunction(((((2, 3),), exponent), (((second.real, second.imag),), 1)), power=power)
         assert _is_alone(function, acb(2, 3), radius, exponent, 200) is alone, power
-
-
-def test_a_disc_is_branched_where_a_value_in_it_is_no_number():
-    for within, branched in [(0.9, False), (1.1, True)]:
-
-        class Root(KnownFunction):
-            def value_and_slope(self, i, s):
-                return 1 / s, acb(1)
-
-        assert is_branched(Root((((1,), 1),)), acb(1), arb(within)) is branched
-        assert is_branched(Root((((1,), 1),)), acb(0, 1), arb(within)) is branched
