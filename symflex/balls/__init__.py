@@ -1,7 +1,7 @@
 """Balls: numbers that contain what is meant, and how sharp they are. Every proof stands on this package."""
 
 from symflex.balls.covering import covered
-from symflex.balls.elimination import Eliminated, columns_of, eliminate, sign_of
+from symflex.balls.elimination import Eliminated, columns_of, eliminate
 from symflex.balls.interval_newton import narrowed, stays_inside
 from symflex.balls.precision import (
     UndecidedError,

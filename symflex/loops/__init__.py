@@ -14,4 +14,4 @@ from symflex.loops.locus import (
 )
 from symflex.loops.loop import Loop, characteristic_loop, pick_gain
 from symflex.loops.networks import AnyLoop, NetworkLoop
-from symflex.loops.stability_map import AllowedCrossover, StabilityMap
+from symflex.loops.stability_map import StabilityMap

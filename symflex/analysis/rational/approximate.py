@@ -26,11 +26,20 @@ from symflex.analysis.response import check_band, default_band
 from symflex.balls import current_bits, precision, to_complex_mpmath, to_mpmath
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.model.loss_factors import check_causal
-from symflex.roots import Band, Everything, Modes, PoleZeroMap, Position, Root
+from symflex.roots import (
+    Band,
+    Everything,
+    Modes,
+    PoleZeroMap,
+    Position,
+    Root,
+    RootProblem,
+    find_polynomial_roots,
+)
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import as_quotient, locate
 from symflex.roots.pole_zero_map import is_right
-from symflex.roots.root import count_roots, modes_of
+from symflex.roots.root import count_roots, exact_fraction, modes_of
 from symflex.transfer import AnyBoundFunction
 from symflex.transfer.bound import EnclosedTransferFunction
 
@@ -194,7 +203,6 @@ def _bands(kept: KeptRoots, band: tuple[float, float] | None) -> tuple[float, fl
 
 
 BITS = 256
-FINEST = 2.0**-80  # accuracy of zeros, relative to the smallest
 BITS_PER_ROOT = 24  # coefficients of a polynomial cancel where its roots span decades
 
 
@@ -258,7 +266,7 @@ def modal_form(bound: AnyBoundFunction, kept: KeptRoots, digits: int) -> Approxi
             zeros = _repeated(kept.zeros)
         else:
             above, below = _real_coefficients(num), _real_coefficients(whole)
-            zeros = _zeros_of(num.coeffs()[: len(above)])
+            zeros = _zeros_of(num.coeffs()[: len(above)], digits)
     evaluator = RationalEvaluator(
         start.order,
         complex(start.coefficients[0].mid()),
@@ -322,39 +330,7 @@ def exact_coefficients(bound: AnyBoundFunction) -> tuple[tuple[mpmath.mpf, ...],
     return num, den
 
 
-def _zeros_of(coefficients: Sequence[acb]) -> list[acb]:
+def _zeros_of(coefficients: Sequence[acb], digits: int) -> list[acb]:
     """Return the roots of a real polynomial, from ascending coefficients, by size; pairs stand together."""
-    middle = [acb(about_zero(c.real).mid()) for c in coefficients]
-    at_zero = next((i for i, c in enumerate(middle) if c != 0), 0)
-    rest = middle[at_zero:]
-    if not any(c != 0 for c in rest[1::2]):
-        zeros = [root for square in _isolated(rest[::2]) for root in _square_roots(square)]
-    else:
-        zeros = _isolated(rest)
-    upper = sorted((z for z in zeros if not z.imag < 0), key=lambda z: float(abs(z).mid()))
-    pairs = [[z] if z.imag == 0 else [z, z.conjugate()] for z in upper]
-    return [acb(0)] * at_zero + [z for pair in pairs for z in pair]
-
-
-def _square_roots(square: acb) -> list[acb]:
-    if square.imag != 0:
-        root = square.sqrt()
-        return [root, -root]
-    size = abs(square).sqrt()
-    return [acb(size), acb(-size)] if square.real > 0 else [acb(0, size), acb(0, -size)]
-
-
-def _isolated(coefficients: Sequence[acb]) -> list[acb]:
-    """Return the roots of a polynomial with exact real coefficients; real ones have no imaginary part."""
-    if len(coefficients) == 1:
-        return []
-    polynomial = acb_poly(coefficients)
-    try:
-        roots = polynomial.roots()
-        smallest = min(float(abs(z).mid()) for z in roots)
-        roots = polynomial.roots(tol=smallest * FINEST)
-    except ValueError:
-        # Zeros that coincide are not isolated.
-        return [acb(complex(z)) for z in np.roots([complex(c) for c in reversed(coefficients)])]
-    # Its conjugate would be another root in the same disc.
-    return [acb(z.real) if z.imag.contains(0) else z for z in roots]
+    exact = [exact_fraction(about_zero(c.real)) for c in coefficients]
+    return _repeated(find_polynomial_roots(RootProblem.from_rationals(exact), digits))

@@ -1,3 +1,3 @@
 """Sensitivities: how poles and zeros move with parameters, proved."""
 
-from symflex.analysis.sensitivity.sensitivity import RootDerivative, differentiate
+from symflex.analysis.sensitivity.sensitivity import RootDerivative
