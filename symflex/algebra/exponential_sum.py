@@ -119,10 +119,7 @@ class ExponentialSum:
         return ExponentialSum(amplitudes, self.halvings)
 
     def waves(self, arguments: int) -> tuple[AxisWave, ...] | None:
-        """Return real terms for real arguments, if all terms times one number come in conjugate pairs.
-
-        ``2 e^q cos(q)`` comes from ``e^((1 + j) q) + e^((1 - j) q)``; ``None`` for one of these alone.
-        """
+        """Return real terms, as ``2 e^q cos(q)`` of ``e^((1 +- j) q)``, if all come in conjugate pairs."""
         pairs: dict[tuple[Multiples, Multiples], Amplitude] = {}
         for exponent, amplitude in self.terms.items():
             growth, phase = [0] * arguments, [0] * arguments

@@ -109,11 +109,7 @@ class Exponentials:
         return Factored.polynomial(target, total) * scale
 
     def restore(self, polynomial: fmpz_mpoly) -> tuple[Factored, tuple[int, ...]]:
-        """Return a polynomial over the coordinates in kernels, and the powers of E that were divided out.
-
-        The polynomial is of even degree in every angle (see :meth:`parity`) and not divisible by any E; it is
-        ``f * prod(E^n)``, and returned are f and n per hyperbolic angle.
-        """
+        """Return a polynomial, even in every angle, in kernels: f and n of ``f * prod(E^n)``."""
         source, both = self.coordinates, self._both
         center = [int(polynomial.degrees()[source.index[a.coordinates[0]]]) // 2 for a in self.angles]
         total = polynomial.compose(*(both.generator(n) for n in source.names), ctx=both.context)
@@ -141,11 +137,7 @@ class Exponentials:
         )
 
     def restore_halved(self, polynomial: fmpz_mpoly) -> tuple[fmpz_mpoly, tuple[int, ...]]:
-        """Return a polynomial over the coordinates in kernels of half the length, of whatever parity it is.
-
-        Returned are f over the ring, whose kernels now stand for half their length, and per hyperbolic angle
-        n with ``polynomial = f * prod(E^(n/2))``.
-        """
+        """Return one of any parity in kernels of half the length: f and n of ``f * prod(E^(n/2))``."""
         source = self.coordinates
         places = [tuple(source.index[c] for c in a.coordinates) for a in self.angles]
         monomials = polynomial.monoms()

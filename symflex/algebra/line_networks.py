@@ -164,10 +164,7 @@ def doubled_relation(relation: Values) -> Values:
 
 
 def equilibrated(size: int, rows: Values, columns: Values, coefficients: Values) -> Values:
-    """Return coefficients scaled by powers of two so that rows and unknowns have largest ones of about one.
-
-    Two steps of Ruiz (2001). They stand in order of rows and columns; the last row and column are not scaled.
-    """
+    """Return coefficients times powers of two, about one but in the last row and column (Ruiz 2001)."""
     inner = (rows < size) & (columns < size)
     starts = np.flatnonzero(np.diff(rows, prepend=-1))
     by_column = np.argsort(columns, kind="stable")

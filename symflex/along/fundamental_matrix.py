@@ -495,10 +495,7 @@ def _convolved(taps: Sequence[Number], source: Sequence[Polynomial], k: int) -> 
 def _reached(
     edges: Collection[tuple[int, int, int]], starts: Sequence[tuple[int, int]], terms: int
 ) -> set[tuple[int, int]]:
-    """Return the states, and their orders in u, that a solution has which starts with some of them.
-
-    Edges are the row and the column of an entry, with a power of u that it holds.
-    """
+    """Return states, and orders in u, that a solution with some of them has; edges are entries in u."""
     visited, pending = set[tuple[int, int]](), list(starts)
     while pending:
         state, order = pending.pop()

@@ -67,10 +67,7 @@ class VaryingSystem(Protocol):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SingularBeginning:
-    """Solutions that are finite at a start where coefficients have poles: ``z_i = h^powers_i v_i``.
-
-    See :class:`symflex.algebra.dispersion.SingularStart`, of which these are the matrices.
-    """
+    """Matrices of :class:`symflex.algebra.dispersion.SingularStart`: ``z_i = h^powers_i v_i``."""
 
     powers: tuple[int, ...]
     matrix: VaryingSystem  # B, with series and bounds about the start; what vanishes there is exactly zero

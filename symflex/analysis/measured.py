@@ -68,11 +68,7 @@ def _bases(count: int, path: str | Path, given: FitOptions) -> list[Base]:
 
 
 def measure(model: Model, given: MeasureOptions) -> MeasuredResponse:
-    """Return a synthetic measurement of one transfer function; see :func:`.measurement.synthesise`.
-
-    An undamped pole, which has no stationary response, and a plan that cannot be meant are refused with
-    SF902.
-    """
+    """Return a synthetic measurement of one function; SF902 for undamped poles, or an impossible plan."""
     check_causal(model, "a synthetic measurement")
     plan = MeasurementPlan.of(given, model.analysis.band)
     (bound,) = derive_bound(model, pick_pairs(model, [given.tf] if given.tf else [])[:1])

@@ -49,10 +49,7 @@ from symflex.transfer.nested_form import BoundNested
 def count_turns(
     omega: npt.NDArray[np.float64], values: npt.NDArray[np.complex128], roots: PoleZeroMap
 ) -> npt.NDArray[np.int64]:
-    """Return how many whole turns to add to ``np.angle(values)``, given all poles and zeros.
-
-    Values are those at ``1j*omega``; entries that are 0 or not finite do not matter.
-    """
+    """Return how many whole turns to add to ``np.angle(values)`` at ``1j*omega``, given all roots."""
     order = _order_at_rest(roots)
     phase = order * np.pi / 2 * np.sign(omega) + _phase_of(roots.zeros, omega) - _phase_of(roots.poles, omega)
     usable = np.isfinite(values) & (values != 0)
@@ -484,13 +481,8 @@ def adaptive_grid(
 ) -> npt.NDArray[np.float64]:
     """Return angular frequencies [rad/s] on which no peak or trough of a transfer function is missed.
 
-    ``points`` are spaced logarithmically. Around a root -a + j b more advance in equal steps of the phase it
-    causes, b itself among them; around a root on the axis they close in up to 1e-7 b and leave it out. Where
-    roots may be missing, points are added until the values turn little from one to the next: a peak narrower
-    than the first steps may be missed then. ``roots`` are all poles and zeros, of a distributed system those
-    in the band, when they are known already.
-
-    SF227 when the band is empty or not positive, ValueError for fewer than 2 points.
+    Around a root -a + j b points advance in equal steps of phase; on the axis they close in up to 1e-7 b.
+    Where roots may be missing, points are added until values turn little. SF227, ValueError.
     """
     if roots is None:
         check_band(low_hz, high_hz)

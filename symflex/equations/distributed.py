@@ -354,12 +354,9 @@ def survey(
     is_followed: bool = False,
     functions: tuple[tuple[str, Call], ...] | None = None,
 ) -> Distributed | None:
-    """Return the distributed parts of a model, ``None`` when it has none.
+    """Return the distributed parts of a model, ``None`` when it has none; flags are those of ``assemble``.
 
-    The evaluator is over the ring without kernels, with the rational blocks; a field may be evaluated at a
-    point in any of the expressions. ``functions`` are those of x, None
-    where nothing varies along it. For the flags see :func:`symflex.equations.assemble.assemble`. Raises
-    ModelError: SF305 when the highest derivatives of a field are not determined, and what evaluation raises.
+    The evaluator is over the ring without kernels; ``functions`` are those of x, if any. SF305.
     """
     moving = None if functions is None else AlongX(evaluator.along_x(), functions)
     is_nameless = is_nameless or is_cut

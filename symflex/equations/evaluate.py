@@ -376,11 +376,9 @@ def written_poles(
 def written_denominator(
     expression: Expression, evaluator: ExactEvaluator, poles: Mapping[str, Factored]
 ) -> Factored:
-    """Return the denominator in s of an expression before anything cancels.
+    """Return the denominator in s of an expression before anything cancels; ``poles`` are those of blocks.
 
-    A product of blocks has the poles of every factor, also where a zero of the next one cancels them; a sum
-    needs those of each term once. The expression has been evaluated without error before; ``poles`` are the
-    denominators of blocks.
+    A product of blocks has the poles of every factor; a sum needs those of each term once.
     """
     one = Factored.number(evaluator.ring, 1)
     match expression:

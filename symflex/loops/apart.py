@@ -33,10 +33,7 @@ class PolesApart:
 
 
 def poles_apart(bound: BoundTransferFunction, factors: Sequence[GainPolynomial]) -> PolesApart:
-    """Return where the roots of those factors lie that do not depend on the gain.
-
-    ``bound`` carries their ring. What divides the others has no poles of its own.
-    """
+    """Return where the roots of those factors over the ring of ``bound`` lie that no gain moves."""
     ring, moving = bound.ratio.ring, {LAPLACE, *bound.kernels.generators}
     parts = [
         (f, exponent * factor.multiplicity, factor.is_hidden)

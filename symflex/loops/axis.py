@@ -55,9 +55,7 @@ def find_on_axis(
 ) -> AxisRoots:
     """Return the roots of a real function of A and B at ``s = j omega``, 0 < omega [rad/s] within limits.
 
-    ``on`` returns values on a ball and in its middle, and ``equation`` the function's value and derivative
-    from these; ``is_excluded`` tells that roots among them are not asked for. What is left after ``most``
-    intervals is undecided; SF505 without that when there are too many, SF506 when the time is over.
+    ``equation`` returns value and derivative; what is left after ``most`` intervals is undecided, else SF505.
     """
     pending = pieces(*limits, FIRST_RATIO)
     roots: list[arb] = []

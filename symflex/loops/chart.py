@@ -236,11 +236,7 @@ def find_chart(
     units: Sequence[str],
     resolve: float = 0.01,
 ) -> StabilityChart:
-    """Return for which values of parameters a model is stable.
-
-    ``resolve`` is the share of the area that may stay undecided. Where the time ends, the chart is returned
-    as far as it is proved. The parameters' ``ranges`` are finite.
-    """
+    """Return where in finite ``ranges`` a model is stable, up to a share to ``resolve`` and the time."""
     reasons: list[str] = []
     free: npt.NDArray[np.bool_] = np.zeros((PARTS,) * 2, dtype=bool)
     pending, smallest, still_open = deque([function.whole(ranges)]), list[OpenBox](), free.size

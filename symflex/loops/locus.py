@@ -69,10 +69,7 @@ class RootLocus:
 
 
 def loop_gain(loop: Loop, gain: Fraction | None = None) -> BoundTransferFunction:
-    """Return the loop's transfer function ``K B/A``, whose value -1 is a closed-loop pole.
-
-    SF806 when the loop is not a straight line in its gain, or K, nominal by default, has no value.
-    """
+    """Return the loop's function ``K B/A``, of the nominal K by default; SF806 where K is no gain of one."""
     above, below = _parts(loop)
     return _with(loop, above * (nominal_gain(loop) if gain is None else gain), below, Fraction(0))
 
@@ -136,10 +133,7 @@ def _with(loop: Loop, num: Factored, den: Factored, gain: Fraction) -> BoundTran
 
 
 def closed_loop_roots(loop: AnyLoop, gain: Fraction, region: Region | None = None) -> PoleZeroMap:
-    """Return the poles at a gain, and the zeros they go to: those of ``B/(A + K B)``.
-
-    What is said of stability holds for the whole model: poles that no gain moves count as well.
-    """
+    """Return the poles at a gain, the zeros of ``B/(A + K B)`` and whether the whole model is stable."""
     if isinstance(loop, NetworkLoop):
         return loop.located(gain, region or Modes(loop.modes))
     if not is_straight(loop):

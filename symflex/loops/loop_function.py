@@ -109,10 +109,7 @@ class LoopFunction:
         return acb(0, 1) if order == 1 else acb(0, arb.pi() / (2 * order)).exp()
 
     def on(self, omega: arb, bits: int) -> tuple[LoopValue, LoopValue]:
-        """Return A and B on a ball of frequencies, and in its middle, as :meth:`parts_around`.
-
-        If there is a root of s, slopes are in a variable whose imaginary axis is that of s.
-        """
+        """Return A and B on a ball of frequencies and in its middle, with slopes along the axis of s."""
         with precision(bits):
             both, slope = self.around(omega * self.turn, bits), self.turn / acb(0, 1)
             around, middle = (

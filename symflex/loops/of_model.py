@@ -54,11 +54,7 @@ def characteristic_loop(
     values: Mapping[str, Given] | None = None,
     what: str = "a root locus or a loop gain",
 ) -> AnyLoop:
-    """Return the characteristic function in a gain, of a large network without writing it out.
-
-    SF902 when there is no such parameter, SF801 when no pole depends on it or it shapes waves; SF501, SF502
-    when it is too large written out, SF803 where the gain stands in more than one row of a large network.
-    """
+    """Return the characteristic function in a gain, of a large network unwritten; SF801, SF803, SF902."""
     check_causal(model, what)
     parameter = _gain_of(model, gain)
     given = dict(values or {})
@@ -113,10 +109,7 @@ def _of_network(model: Model, parameter: ModelParameter, given: Mapping[str, Giv
 def stability(
     model: Model, given: StabilityOptions, values: Mapping[str, Given] | None = None
 ) -> StabilityMap:
-    """Return for which values of a gain the model is stable; see :func:`symflex.loops.find_stable_gains`.
-
-    SF902 when there is no such parameter, SF801 when no pole depends on it.
-    """
+    """Return for which values of a gain the model is stable; see :func:`symflex.loops.find_stable_gains`."""
     limits = gain_ends(given.limits, _gain_of(model, given.gain))
     radians = None if given.up_to is None else 2 * pi * highest_frequency(given.up_to)
     digits, what = given.digits or model.analysis.digits or 15, "stability of a loop"

@@ -67,15 +67,10 @@ def locate(
     with_zeros: bool = True,
     judged: PoleZeroMap | None = None,
 ) -> PoleZeroMap:
-    """Find the poles and zeros of a transfer function, with its hidden modes, proved.
+    """Find the poles and zeros of a transfer function, with its hidden modes, proved to so many digits.
 
-    Each root has so many correct significant digits. A transfer function that is identically zero has neither
-    poles nor zeros; all its modes are hidden. Those of a distributed system, of which there are infinitely
-    many, are searched in :func:`default_region` when everything is asked for, and the search is limited by
-    its work where no time is. Of one in nested form, a network of beams, roots are counted
-    without expanding anything. Where zeros are not wanted those of a distributed system may be left out, and
-    poles that coincide with one stay among the others. ``judged`` is another map of the same function, whose
-    poles in the right half-plane need not be counted again.
+    Those of a distributed system are searched in :func:`default_region` where everything is asked for.
+    Poles in the right half-plane of a map that was ``judged`` are not counted again.
     """
     if isinstance(bound, BoundNested):
         # Figures, responses and tables of one function ask for the same roots.
@@ -221,10 +216,7 @@ def locate_distributed(
 ) -> PoleZeroMap:
     """Find the poles and zeros of a transfer function with kernels, to so many significant digits, proved.
 
-    For everything :func:`default_region` is searched. For a number of modes, the lowest poles and the lowest
-    zeros; roots that mirror each other in the axes count as one mode. When the budget is exceeded, what was
-    certified so far is returned. Certified if every root in the region was counted, found, and separated
-    from the others.
+    Roots that mirror each other count as one mode. What is certified is returned when the budget is exceeded.
     """
     where, is_default = _region_of(bound, region)
     searched = _Searched(bound, where, digits, with_zeros=with_zeros)

@@ -360,10 +360,7 @@ class PoleZeroMap:
     ) -> Self:
         """Assemble what a search delivers: poles, zeros and hidden modes of the region.
 
-        ``growing`` are poles known wherever they lie, of which those in the right half-plane that are not
-        shown become ``unstable``. Where nobody asked for this number of modes, they are shown among the
-        poles. ``found`` is the number of roots enclosed, if they are more than those shown; so many are
-        ``missing``. ``reasons`` say what is not proved.
+        ``growing`` poles on the right become ``unstable``, or poles in a region by default.
         """
         poles, zeros, hidden = shown
         beyond = in_order(right_beyond(growing, poles))
@@ -448,10 +445,7 @@ def find_pole_zero_map(
 ) -> PoleZeroMap:
     """Find poles and zeros, without common factors, in a region; by default everywhere.
 
-    Each part of each root has so many correct significant digits; more are computed where the region asks for
-    it. ``hidden`` are cancelled factors, each with its cause; all their roots are reported when the region is
-    a number of modes, else those in the region. When the budget is exceeded, what was certified so far is
-    returned. A root whose side of the boundary stays undecided after refinement counts as on the boundary.
+    ``hidden`` are cancelled factors, each with its cause; of a number of modes all their roots are reported.
     """
     where = region if region is not None else Everything()
     whole = Everything() if isinstance(where, Modes) else where

@@ -23,15 +23,10 @@ ROUNDING = 1e-12  # relative difference of two doubles below which their order i
 def find_polynomial_roots(
     problem: RootProblem, digits: int, proposers: tuple[Proposer, ...] = ()
 ) -> tuple[Root, ...]:
-    """Enclose every root of a product of polynomials with exact coefficients.
+    """Enclose every root of a product of polynomials with exact coefficients, to so many digits.
 
-    So many significant digits are correct in the real and in the imaginary part of every root. ``proposers``
-    guess roots, tried in turn; by default chosen by degree. The order is by natural frequency, then real
-    part, positive imaginary part first; both members of a conjugate pair. A root that the constants' balls
-    cannot tell from a neighbour is merged with it and not ``certified``.
-
-    SF401 when a leading coefficient cannot be told from zero, SF404 when roots do not separate, SF506 when
-    the time is over: ``found`` is a tuple of the roots proved until then.
+    The order is by natural frequency, then real part, positive imaginary part first.
+    SF401, SF404, SF506: ``found`` has the roots proved until then. ``proposers`` guess roots, in turn.
     """
     if digits < 1:
         raise ValueError(f"digits must be at least 1, not {digits}")

@@ -97,10 +97,7 @@ class Agreement:
 def compare(
     solve: ModelSolve, agreements: Sequence[Agreement], values: Mapping[str, ExactValue] | None = None
 ) -> str:
-    """Compare functions with the equations at random points, or at random frequencies with the given values.
-
-    Returns why they could not be compared; nothing where they agree. Raises InternalError: SF991 they differ.
-    """
+    """Return why functions cannot be compared with the equations at random points; SF991 if they differ."""
     reason = solve.direct.unsolved
     if not reason and not all(solve.direct.has(each.pair) for each in agreements):
         reason = "the function has been given other names than its equations have"

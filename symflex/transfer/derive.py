@@ -59,10 +59,7 @@ def derive(equations: Equations, output: str, source: str) -> TransferFunction:
 def derive_all(
     equations: Equations, pairs: Sequence[tuple[str, str]], most: Terms | None = None
 ) -> tuple[TransferFunction, ...]:
-    """Return several transfer functions that share one elimination; see :func:`derive`.
-
-    ``most`` refuses distributed systems earlier, whose formulas nobody would read.
-    """
+    """Return transfer functions of one elimination; ``most`` refuses distributed systems earlier."""
     workshop = _CramerQuotients(equations, most)
     derived = tuple(workshop.finish(output, source) for output, source in pairs)
     if not (workshop.is_sure or is_tapered(equations.model)):
@@ -328,11 +325,7 @@ def _lowest(value: Factored) -> Factored:
 
 
 def nested_transfer(block: PlacedBlock, ring: Ring) -> tuple[Factored, Factored]:
-    """Return the transfer function of a ``model`` block, and what cancelled in it, over the outer ring.
-
-    Powers of s that cancelled are left behind: a position that nothing sees is no state of the outer model.
-    Raises ModelError: SF910 when the block stands for a distributed system.
-    """
+    """Return a ``model`` block's function and what cancelled but powers of s; SF910 if distributed."""
     if block.submodel is None or block.tf is None:
         raise ValueError(f"block '{block.name}' contains no model")
     tf = derive(assemble(block.submodel, nested_transfer), *block.tf)

@@ -150,10 +150,7 @@ class KernelReduction:
     def _without_reflections(
         self, num: Factored, den: Factored, cancelled: Factored
     ) -> tuple[Factored, Factored] | None:
-        """Return :meth:`_lowest` where that leaves no kernel once wavenumbers are rational in s, else None.
-
-        So a line that ends in its own impedance ``sqrt(L/C)`` is a resistor.
-        """
+        """Return :meth:`_lowest` if it leaves no kernel: a line that ends in its impedance is a resistor."""
         if len(self._images) < len(self.table.dispersions):
             return None
         values = (self._radicals.reduced(_solved_for(v, self._images)) for v in (num, den, cancelled))

@@ -405,11 +405,7 @@ AnyBoundFunction = BoundTransferFunction | BoundNested  # both representations, 
 
 
 def bind_nested(tf: NestedTransferFunction, values: Mapping[str, Given] | None = None) -> BoundNested:
-    """Return a nested transfer function with the declared values, or the given ones in their place.
-
-    Values are in SI units or have a unit ("0.8 m"). Raises ModelError: SF229 a parameter without value;
-    UsageError: SF902 an unknown parameter.
-    """
+    """Return a nested function with the declared values, or the given ones; SF229 without, SF902 unknown."""
     return BoundNested(tf, values_for(tf.model, tf.parameters, dict(values or {})))
 
 

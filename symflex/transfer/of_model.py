@@ -53,10 +53,7 @@ NEVER_LARGE = 20  # elements of a lumped model up to which its terms are not est
 
 
 def pick_pairs(model: Model, names: Sequence[str]) -> tuple[tuple[str, str], ...]:
-    """Return the (output, input) pairs named "OUT/IN", all of them when no name is given.
-
-    Raises UsageError: SF902 for a name the model does not have.
-    """
+    """Return the (output, input) pairs named "OUT/IN", all of them by default; SF902 for an unknown name."""
     known = {"/".join(pair): pair for pair in model.transfer_functions}
     for name in names:
         if name not in known:
@@ -168,10 +165,7 @@ def derive_as(
 ) -> tuple[tuple[AnyTransferFunction, ...], str]:
     """Return transfer functions in one of the two exact representations, and why in that one.
 
-    ``expanded``: quotients of polynomials; ``nested``: straight-line programs; ``auto``: expanded, unless
-    that would explode, and then a sentence says why it is not. With ``solves`` they are for code that solves
-    networks of distributed members, and is shorter than that of a formula already for small ones. With
-    ``is_read`` they are for people, to whom a formula of pages is less use than its steps.
+    ``auto`` is ``expanded`` unless that explodes, or code that ``solves``, or people, are served better else.
     """
     if representation == "nested":
         return derive_nested(model, pairs), ""
@@ -250,11 +244,7 @@ def _expanded_terms(equations: Equations, pair: tuple[str, str]) -> float:
 
 
 def derive_bound(model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[BoundTransferFunction, ...]:
-    """Return transfer functions with the declared values, derived with numbers from the start.
-
-    What needs no symbols, such as poles and zeros, reaches far larger models this way. Raises ModelError:
-    SF229 when a parameter that occurs has no value.
-    """
+    """Return transfer functions with the declared values, derived with numbers from the start; else SF229."""
     return tuple(bind(tf) for tf in derive_all(with_numbers(model), pairs))
 
 
@@ -296,10 +286,7 @@ def derive_if_small(
 def _with_wavenumbers(
     model: Model, pairs: Sequence[tuple[str, str]], expanded: tuple[BoundTransferFunction, ...]
 ) -> tuple[BoundTransferFunction, ...]:
-    """Return functions as they are, or with numbers where only so all wavenumbers have formulas.
-
-    Beams in a layer whose stiffnesses are as their masses by value alone have a law that splits.
-    """
+    """Return functions as they are, or with numbers where only so all wavenumbers have formulas."""
     if all(_is_named(bound.kernels) for bound in expanded):
         return expanded
     numbers = with_numbers(model, in_kernels=True)

@@ -262,10 +262,7 @@ class _Draw:
 
 
 def _tapered(bound: BoundTransferFunction, *, is_solved: bool) -> Evaluate:
-    """Return what evaluates functions of entries of fundamental matrices.
-
-    The entries are arbitrary numbers where laws are not solved: no print of them uses what they are.
-    """
+    """Return what evaluates functions of entries of fundamental matrices, arbitrary where not solved."""
     known: dict[tuple[int, str], dict[str, acb]] = {}
 
     def evaluate(value: Factored | None, bits: int) -> Callable[[acb], acb]:

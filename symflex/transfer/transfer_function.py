@@ -164,11 +164,7 @@ class TransferFunction:
 
     @property
     def num(self) -> Factored:
-        """The numerator, entire in s.
-
-        For a distributed system it may bear negative powers of wavenumbers and of differences of their
-        squares; the kernels vanish where these do.
-        """
+        """The numerator, entire in s, maybe with negative powers of waves where the kernels vanish."""
         return self.ratio.numerator() if self.parts is None else self.parts[0]
 
     @property
@@ -324,10 +320,7 @@ def name_quantity(output: Output, source: Input, known: Dimension | None = None)
 
 
 def unit_of_quotient(output: Output, source: Input, known: Dimension | None) -> str:
-    """Return the SI unit of output over input, empty when it is unknown.
-
-    ``known`` is the quotient's dimension, which may be known where one of the ends is not.
-    """
+    """Return the SI unit of output over input, empty when unknown; ``known`` is their dimension."""
     if output.dimension is None or source.dimension is None:
         return "" if known is None else str(known)
     if output.dimension == source.dimension:

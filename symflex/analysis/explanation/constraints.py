@@ -162,11 +162,7 @@ class ReplacedCondition:
 
 
 def replace_condition(model: Model, source: Input, output: Expression) -> ReplacedCondition | None:
-    """Return the model in which an output is zero, instead of the condition that contains the input.
-
-    ``None`` unless the input, a free signal, stands in one condition and nowhere else, and the output is a
-    multiple of one value of a field.
-    """
+    """Return the model in which an output is zero in place of the input's one condition; else ``None``."""
     unknowns = {u for f in model.fields for u in f.unknowns}
     calls = [*{n: None for n in names(output) if isinstance(n, Call) and n.name in unknowns}]
     constants = {p.name for p in model.parameters} | {d.name for d in model.definitions} | {"s", "pi"}

@@ -274,10 +274,7 @@ class _PlacedAmplitude:
 def normalised(shape: EnclosedModeShape, digits: int) -> EnclosedModeShape | None:
     """Return a shape whose largest displacement is 1, None when its balls do not tell which that is.
 
-    Displacements are those of nodes in translation, along beams, rods and strings, and of each field's first
-    unknown. Where all of these are at rest, the largest angle is 1; where no angle moves either, the largest
-    voltage; else the largest of what is left. What is smaller than ``10^-digits`` of another motion, in SI
-    units, is at rest.
+    Without displacements it is the largest angle, then voltage; 10^-digits of another motion is at rest.
     """
     groups = [list(places) for places in _groups(shape)]
     largest = max((p.size for group in groups for p in group), default=0.0)

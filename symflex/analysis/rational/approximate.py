@@ -71,10 +71,7 @@ class KeptRoots:
 def truncate(bound: AnyBoundFunction, modes: int, digits: int) -> KeptRoots:
     """Return the poles of a number of modes, and the zeros below the first pole left out.
 
-    Poles in the right half-plane are kept wherever they lie: without them the approximation would be stable.
-    Zeros are left out from above until there are no more than poles, unless nothing is left out of a rational
-    function: what grows with s is of no use to a simulation. Modes count as in :class:`symflex.roots.Modes`,
-    roots at 0 aside; SF902 for a number below zero.
+    Poles in the right half-plane stay; zeros go from above until there are no more of them, unless all stay.
     """
     if modes < 0:
         raise UsageError(Diagnostic("SF902", f"the number of modes cannot be {modes}"))

@@ -418,11 +418,7 @@ class PrincipalPart:
 def find_residues(
     bound: AnyBoundFunction, region: Region | None = None, digits: int = 15
 ) -> tuple[PrincipalPart, ...]:
-    """Return the principal parts at the poles in a region, in their order; both members of a conjugate pair.
-
-    The region is one of :func:`symflex.roots.locate.locate`; SF505 or SF506 where the search for poles takes
-    too long, SF405 when poles cannot be separated, or the behaviour at one cannot be decided.
-    """
+    """Return principal parts at the poles of a region, both members of a pair; SF405 where undecided."""
     check_causal(bound.source.model, "a residue")
     if bound.is_reduced:
         bound = without_lengths_of_zero(bound)

@@ -270,10 +270,7 @@ Obstacle = Literal["multiple", "undecided"]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RootBranch:
-    """A function of s and the parameters that is zero at a root while its derivative in s is not.
-
-    By the implicit function theorem the root is then a differentiable function of the parameters.
-    """
+    """A function that is zero at a root, where its slope in s is not: so roots follow the parameters."""
 
     tangents: Tangents  # evaluates the function
     factor: fmpz_mpoly  # the function

@@ -31,10 +31,7 @@ from symflex.transfer import AnyBoundFunction
 
 
 def estimated(bound: AnyBoundFunction, integrations: int, times: SampleTimes) -> Sampled:
-    """Return the sum over the lowest modes; higher ones are taken to fade as the upper half of them does.
-
-    Raises UncertifiedError: SF810 where modes do not say what the response is.
-    """
+    """Return the sum over the lowest modes, which higher ones are taken to fade as; SF810 if they do not."""
     few, many = EFFORT.few_estimated, EFFORT.estimated_modes
     count = many if bound.is_reduced else few
     modal_sum = _summed(bound, integrations, times, count)

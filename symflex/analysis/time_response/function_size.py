@@ -44,10 +44,7 @@ class Rest:
 
 @dataclass(frozen=True, eq=False)
 class SizeOfExponentials:
-    """How large a sum of exponentials over another is at most on a ball of s.
-
-    Of every sum the largest exponential is taken out, so that values far from the imaginary axis hardly vary.
-    """
+    """How large a sum of exponentials over another is on a ball of s, the largest of each taken out."""
 
     bound: BoundTransferFunction
     values: ExponentialValues
@@ -118,13 +115,9 @@ class SizeOfExponentials:
         return None
 
     def around(self, hole: Cell, poles: Sequence[acb], integrations: int) -> Ring | None:
-        """Return what all poles in a neighbourhood add where infinitely many accumulate, as about -1/eta.
+        """Return what all poles about an accumulation add: a sum on a ring (Trefethen and Weideman 2014).
 
-        It is an integral over a ring about them, as a sum over its points: what is summed is analytic on the
-        ring, so the error falls like a power of its width (Trefethen and Weideman 2014). First comes the
-        ring, with all ``poles`` in it; then the terms, and what they lack at most. That holds
-        if there is no pole on the ring itself, as there is none where all within its reach are given. Then
-        no value on it is larger than those on its two edges.
+        First comes the ring, with all ``poles`` that it contains; then the terms, and what they lack at most.
         """
         with precision(2 * EFFORT.bits):
             ring = ring_about(hole, poles)

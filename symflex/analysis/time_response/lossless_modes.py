@@ -249,10 +249,7 @@ class LosslessModes(ModesBound):
 
 
 def lossless_modes(bound: BoundTransferFunction, integrations: int) -> tuple[LosslessModes, int] | Refused:
-    """Return what bounds the modes of a function of undamped beams, of one length.
-
-    A step of a velocity is an impulse of a displacement, and so a function over s is tried as well.
-    """
+    """Return what bounds the modes of undamped beams of one length, of the function or that over s."""
     modes = _modes_of(bound)
     if isinstance(modes, Refused) and integrations:
         s = Factored.generator(bound.ratio.ring, "s")
@@ -289,11 +286,7 @@ def _modes_of(bound: BoundTransferFunction) -> LosslessModes | Refused:
 
 
 def _multiplied(bound: BoundTransferFunction) -> Factored | None:
-    """Return the function with one factor for all kernels above, and one for those below.
-
-    One by one they need not be real on the axis: ``cosh(q) cos(q)`` is, and ``cosh(q)`` is not. The result is
-    None if factors below are powers.
-    """
+    """Return the function with one factor for all kernels above and one below, real on the axis, or None."""
     ring = bound.ratio.ring
     above, below = ring.constant(1), ring.constant(1)
     rest = []

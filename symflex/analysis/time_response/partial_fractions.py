@@ -115,11 +115,7 @@ class EnclosedQuotient:
 def partial_fractions(
     quotient: EnclosedQuotient, poles: Sequence[Root], integrations: int
 ) -> list[ExponentialTerm] | None:
-    """Return the inverse Laplace transform of a quotient over ``s^integrations`` for t > 0.
-
-    ``poles`` are all poles of the quotient, proved, with both members of each conjugate pair. The result is
-    None if poles are not separated, or balls are too wide.
-    """
+    """Return the inverse Laplace transform of a quotient for t > 0, given its poles; None if close."""
     if not all(root.certified for root in poles):
         return None
     divided = replace(quotient, below=(*quotient.below, (acb_poly([0, 1]), integrations)))

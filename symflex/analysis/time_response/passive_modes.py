@@ -158,10 +158,7 @@ def _input_gain(model: Model, bound: BoundTransferFunction) -> arb:
 def _colocated(
     bound: BoundTransferFunction, model: Model, ends: list[Coordinates]
 ) -> list[BoundTransferFunction]:
-    """Return what a force moves where it acts, at both ends; nothing where the model is not reciprocal.
-
-    That a force at one end moves the other as much as the other way round is seen from both functions.
-    """
+    """Return what a force moves at both ends where the model is reciprocal, seen from both functions."""
     forces, shown = [], []
     for i, coordinates in enumerate(ends):
         kind = force_on(model, coordinates[0][0]) or ""

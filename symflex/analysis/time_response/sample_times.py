@@ -123,11 +123,7 @@ class SampleTimes:
         return start, SampleTimes(left, self.step, 0.0, moment + off)
 
     def spread(self, start: int = 0, delay: arb | None = None) -> tuple[list[arb], list[arb]]:
-        """Return two lists of balls at the current precision: the sums a + b, a by a, begin with all times.
-
-        Those before number ``start`` are left out, and ``delay`` [s] is taken from the others. The slack is
-        in the first list.
-        """
+        """Return two lists whose sums, a by a, are all times from number ``start`` on, less ``delay``."""
         off = (arb(0) if delay is None else delay) + (self.origin or 0)
         if self.step is None or not len(self):
             return [arb(t) - off for t in self.seconds[start:].tolist()], [arb(0)]

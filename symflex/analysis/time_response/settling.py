@@ -129,11 +129,7 @@ def falls_off(quotient: DelayedQuotient) -> bool:
 def late_response(
     bound: BoundTransferFunction, quotient: DelayedQuotient, digits: int, integrations: int = 1
 ) -> LateResponse | None:
-    """Return what a step response settles into, at the current precision, from poles of so many digits.
-
-    With more integrations it is that of a ramp, on whose line H/s is divided by s, and s is no smaller than
-    the rate. It is None if that is not proved: delayed terms do not fall off against D_0, or H does not.
-    """
+    """Return what a step response settles into, or a ramp's with more integrations; None if not proved."""
     loop = _Loop(quotient, digits)
     if not loop.falls_off:
         return None
@@ -172,11 +168,7 @@ def settled(
     times: SampleTimes,
     digits: int,
 ) -> Sampled | None:
-    """Return a response to a step or ramp: echoes at first, then residues; None if there is no bound.
-
-    Residues begin when the bound on the other poles is below the ``goal``, in digits of the largest value.
-    Raises TooManyEchoesError when too many echoes arrive until then.
-    """
+    """Return a response to a step or ramp: echoes, then residues once bounded by the ``goal``; or None."""
     with precision(bits_for_digits(2 * digits)):
         late = late_response(bound, quotient, digits, integrations)
         if late is None:

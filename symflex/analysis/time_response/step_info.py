@@ -132,11 +132,9 @@ class StepInfo:
 def find_step_info(
     bound: AnyBoundFunction, digits: int = 12, modes: PartialSum | None = None
 ) -> StepInfo | None:
-    """Return the properties of a step response, from poles of about so many digits, or from a known sum.
+    """Return the properties of a step response, from poles to so many digits, or from a known sum.
 
-    The result is None if it does not come to rest, or at 0, where poles cannot be separated, with a root of
-    s, with waves in a loop with a delay, and with those whose modes are not bounded, as of large networks.
-    With waves, numbers are as sharp as the modes left out allow.
+    The result is None where it does not come to rest, or at 0, and where poles or modes are not bounded.
     """
     check_causal(bound.source.model, "a step response")
     if not bound.is_reduced:

@@ -68,9 +68,7 @@ class SignChange:
 class LosslessSearch:
     """Searches one undamped function, real but for a constant factor on both axes, factor by factor.
 
-    What is not real is left to a count. ``order`` is that to which the function vanishes at s = 0.
-    :meth:`extend` puts what it finds in the closed right upper quadrant into ``roots``; ``reached`` is ln of
-    the radius up to which it searched.
+    What is not real is left to a count. ``order`` is that at s = 0; ``reached`` is ln of a radius.
     """
 
     def __init__(self, function: LosslessFunction, order: int, digits: int) -> None:

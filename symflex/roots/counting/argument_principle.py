@@ -68,9 +68,7 @@ class LogarithmicLine:
 class CertifiedWinding(Winding[E_co]):
     """Follows one function along paths with proof; every step spends.
 
-    With ``tries_series``, where steps are too long for sums of exponentials, power series are tried before
-    shorter steps: next to points where wavenumbers meet these would have to be very short. They are tried
-    anyway on a path where a step turned far less than it might have.
+    With ``tries_series``, power series are tried before shorter steps, as next to points where waves meet.
     """
 
     def __init__(self, function: E_co, *, tries_series: bool = False) -> None:

@@ -92,9 +92,7 @@ def sampled_series(
 ) -> LocalSeries | None:
     """Return a function's series about a point from values on a circle, ``None`` where these are not finite.
 
-    See :func:`local_series`; ``bound`` is that of the function on the circle of radius ``reach``, and
-    ``shrunk`` the radius of the circle where values are taken, over ``reach``: each point makes the error
-    that comes of their number smaller by it. There are no more ``terms`` than points.
+    ``bound`` is that on the circle of radius ``reach``, and ``shrunk`` the radius of the values' one over it.
     """
     with precision(bits):
         radius = (reach * shrunk).mid()

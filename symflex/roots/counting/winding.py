@@ -222,9 +222,7 @@ SPREAD = 2.0**-50  # relative width that makes up for the rounding of a step's m
 def total_turn(change: Callable[[float, float], tuple[float, arb]], first: float, smallest: float) -> arb:
     """Return the change of an argument along a path from t = 0 to 1.
 
-    ``change`` returns for a step between two t a bound on the deviation from its middle, and the turn from
-    one end to the other, which has to be right where the bound is at most ``ROOM``. ``first`` is the length
-    of the first step in t; RootOnPathError when steps would become smaller than ``smallest``.
+    ``change`` returns of a step a bound on the deviation from its middle, and the turn from end to end.
     """
     total = arb(0)
     t, step = 0.0, first

@@ -88,10 +88,7 @@ class Count:
     def proof(
         self, domain: Cell, located: Sequence[Root], at_zero: Sequence[Root], innermost: float | None
     ) -> Proof:
-        """Count the domain that was searched, and compare with all roots located, mirror images included.
-
-        ``innermost`` is ln of the radius of a disc about 0 within which none was sought.
-        """
+        """Count the domain that was searched, but ``innermost``, and compare with all roots and images."""
         if not are_apart(located):
             count = count_roots(located)
             return Proof(count, count, TOUCHING)
@@ -257,10 +254,7 @@ def roots_at_zero(
 ) -> tuple[list[Root], int]:
     """Return the root at s = 0, and how often the function without powers of s winds about 0 there.
 
-    ``winding`` is of the function without powers of s, ``part`` the product with them. ``left`` is pi, or
-    pi/2 for functions whose roots mirror each other in the imaginary axis; holes are stayed away from. Of
-    what is hidden only powers of s count, not what kernels vanish like. SF404 when no circle about 0 can be
-    counted.
+    ``part`` is the product with them; of what is hidden these alone count. SF404 if no circle can be counted.
     """
     function = winding.function
     power = function.power

@@ -53,9 +53,7 @@ def search_right(
 ) -> RightHalfPlane:
     """Count the roots of a function with kernels in the right half-plane, and find them.
 
-    ``side`` is the same function, perhaps searched elsewhere; ``known`` roots are those found already,
-    anywhere, proved. Up to an abs(s) of ``reached`` [rad/s] all roots are known; 0 where that is not so.
-    Beyond a ``limit`` [rad/s], where one is given, it is known that none lies in the right half-plane.
+    All roots are ``known`` up to ``reached`` [rad/s], and none lies there beyond a ``limit`` that is given.
     """
     if side.is_finite:
         return RightHalfPlane(tuple(known))

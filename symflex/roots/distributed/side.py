@@ -55,9 +55,7 @@ MORE_DIGITS = 30  # digits beyond twice those asked for, in which a pole and a z
 class Side:
     """The numerator, the denominator, or what cancelled between them.
 
-    Of what is hidden, only powers of s count as roots at 0, not what kernels vanish like. What one of the
-    ``engines`` cannot do is left to the next; TypeError when none of them can. ``roots`` are all found so
-    far, mirror images and roots at 0 included; so many are ``missing``: counted but not found.
+    What one of the ``engines`` cannot do is left to the next; so many roots are ``missing``: not found.
     """
 
     def __init__(

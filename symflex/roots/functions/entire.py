@@ -55,10 +55,7 @@ class Followed(Protocol):
 
 
 class Entire(Followed, Protocol):
-    """An entire function, a product of powers of factors, enclosed at points and on balls.
-
-    What is counted is its ``power``, a function of one value.
-    """
+    """An entire function, a product of powers of factors; its ``power`` has one value, and is counted."""
 
     @property
     def power(self) -> int:

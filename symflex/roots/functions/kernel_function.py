@@ -47,9 +47,7 @@ MODAL_WORK = 0.15  # what sums over characteristic roots cost, in terms, over th
 class KernelFunction:
     """A product of powers of polynomials in s, wavenumbers and kernels.
 
-    What is counted is ``part**power``: a power that makes a function of one value out of one whose sign or
-    phase depends on the branch of a wavenumber; 1 for most. ``work`` is the number of terms evaluated so far;
-    it grows with use, so that searches can keep to a budget.
+    ``part**power`` has one value whichever branch a wavenumber takes; ``work`` counts terms evaluated so far.
     """
 
     bound: BoundTransferFunction  # whose ring and kernels they are

@@ -48,12 +48,9 @@ class Found:
 
 
 class RootSearch:
-    """Searches one function with at least one kernel.
+    """Searches one function with at least one kernel, but for holes in which roots accumulate.
 
-    Holes, neighbourhoods of points where roots accumulate, are left out; ``excluded`` are those that a search
-    met. :meth:`extend` puts what it finds in the upper half-plane, for even functions in its right quadrant,
-    into ``roots``; so many are ``missing``: counted on the way but not found. ``reached`` is ln of the radius
-    up to which it searched.
+    Roots lie in the upper half-plane, of even functions in its right quadrant, up to ln(abs(s)) ``reached``.
     """
 
     def __init__(self, winding: Winding[Entire], holes: Sequence[Cell], digits: int) -> None:

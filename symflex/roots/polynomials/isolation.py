@@ -38,14 +38,9 @@ GROWTH_FLOOR = 2048
 def isolations(
     polynomial: PolynomialInS, digits: int, *, in_square: bool, proposers: Sequence[Proposer]
 ) -> Iterator[tuple[Disc, ...]]:
-    """Enclose every root of a square-free polynomial, ever closer.
+    """Enclose every root of a square-free polynomial in s or s^2 without the root 0, ever closer.
 
-    The polynomial in s, or in z = s^2, is of positive degree and without the root 0. Yielded are discs of all
-    roots, at last with so many correct digits in each nonzero component of the roots s, or at the bound on
-    precision; a ``count`` above one marks roots that could not be separated within that bound. The next one
-    of the ``proposers`` is asked when a guess does not certify.
-
-    SF404 when the bound on precision is reached without isolating discs, SF506 when the time is over.
+    Discs with a ``count`` above one are not separated within the bound on precision; SF404, SF506 if none.
     """
     bits = first_bits(polynomial, digits)
     growth = GROWTH_EXACT if polynomial.is_exact else GROWTH_WITH_CONSTANTS
