@@ -33,8 +33,7 @@ class Minor:
 
 
 Product = tuple[Minor, ...]
-MinorSum = tuple[tuple["fmpz_mpoly", Product], ...]
-"""Coefficients, free of entries, and the minors they are multiplied by."""
+MinorSum = tuple[tuple["fmpz_mpoly", Product], ...]  # coefficients free of entries, times minors
 
 
 @dataclass(frozen=True, eq=False)

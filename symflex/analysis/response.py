@@ -337,9 +337,7 @@ def respond(
     return SampledResponse(bound.name, grid, values, quantity, unit, turns)
 
 
-BEYOND_BAND = (1.5, 1.1)
-"""Roots are taken out of a network's phase up to so many times its highest frequency, the second where not
-all so far up can be proved; the rest turns slowly."""
+BEYOND_BAND = (1.5, 1.1)  # of a network's phase, roots up to so many times its end are taken out
 TO_REST = 12  # frequencies below the lowest at which that rest is followed to s = 0, over three decades
 
 

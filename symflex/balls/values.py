@@ -143,8 +143,7 @@ def series_quotient(above: Sequence[acb], below: Sequence[acb], count: int) -> l
     return [quotient[i] for i in range(count)]
 
 
-Step = tuple[int, tuple[int, ...], int]
-"""How many factors of the last product stay, which powers follow, and the term's integer."""
+Step = tuple[int, tuple[int, ...], int]  # factors of the last product kept, powers that follow, the integer
 
 
 @dataclass(frozen=True, slots=True)

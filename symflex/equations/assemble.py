@@ -73,9 +73,7 @@ if TYPE_CHECKING:
 Nested = Callable[[PlacedBlock, Ring], tuple[Factored, Factored]]
 PI = "pi"
 GENERATOR_LIMIT = 1_000  # names over a dense ring, with an exponent each per monomial; a round number
-UNKNOWN_LIMIT = 2_500
-"""Unknowns over a dense ring; a singular system of so many can still be explained with a dense matrix, which
-is 50 MB of doubles."""
+UNKNOWN_LIMIT = 2_500  # of a dense ring; a singular system is explained with 50 MB of doubles
 SPARSE_LIMIT = 500_000  # names, and unknowns, of equations over a sparse ring
 
 

@@ -126,8 +126,7 @@ def _local(
     return [propagation.embed(x) for x in row], [propagation.embed(x) for x in direct]
 
 
-State = tuple[tuple["Variable | None", Factored], ...]
-"""Per state, the variable it equals, and the factor with which it does; None if it is zero."""
+State = tuple[tuple["Variable | None", Factored], ...]  # per state, what it equals, times what; None for zero
 
 
 @dataclass(frozen=True, eq=False)

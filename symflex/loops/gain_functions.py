@@ -29,9 +29,7 @@ NEAREST_ZERO = 70  # halvings of the range towards zero; what is left is looked 
 EACH_RATIO = 3.7
 MOST_FAILED = 8
 NARROW_BITS = 20  # parts in which gains stay undecided, to a relative accuracy, until all others do
-MOST_INTERVALS = 4_000
-"""Intervals in each part of a range, whose ends have that ratio, so that none is a short number; what is left
-is undecided."""
+MOST_INTERVALS = 4_000  # in each part of a range, so that none is short; others are undecided
 ZERO = Fraction(0)
 RANGE_OF_NOMINAL = 100  # times of the nominal gain examined if there may be boundaries without end
 INSIDE = 16  # gains that are tried where the declared one is not in the range

@@ -24,8 +24,7 @@ from symflex.transfer import BoundTransferFunction, Given, TransferFunction, bin
 from symflex.transfer.bind import values_for
 
 TRIALS = ("1", "2", "0.37")  # values of a gain without one, to bind other parameters; one is not singular
-NO_LOOP = "a loop is closed in [signals], as in e = 'r - y', u = 'K*e'"
-"""Hint where a parameter moves no pole."""
+NO_LOOP = "a loop is closed in [signals], as in e = 'r - y', u = 'K*e'"  # where nothing moves a pole
 
 
 @dataclass(frozen=True, slots=True)

@@ -273,8 +273,7 @@ class LumpedFactor:
         return list(roots)
 
 
-Terms = dict[tuple[int, tuple[int, ...], tuple[int, ...]], int]
-"""Integer coefficients by the exponents of s, of the gain and its functions, and of the ring's others."""
+Terms = dict[tuple[int, tuple[int, ...], tuple[int, ...]], int]  # by exponents of s, the gain, and others
 
 
 def _in_root(terms: Terms, functions: GainFunctions, constants: list[RealConstant]) -> Terms:

@@ -46,12 +46,10 @@ if TYPE_CHECKING:
 
     Piece = tuple[float, arb, LoopValue, LoopValue]  # magnitude, place, values around and in the middle
 
-BITS, MOST_DIGITS, SPARE_DIGITS = 160, 30, 20
-"""Of pieces, which are halved some hundred times at most; of frequencies, beyond those of magnitudes."""
+BITS, MOST_DIGITS, SPARE_DIGITS = 160, 30, 20  # of pieces, halved some hundred times; of frequencies
 SUSPECT, NARROWEST, MOST_PIECES = 1e-9, 1e-30, 20_000
 """Relative widths at which a pole is looked for, and a search given up, as with so many pieces."""
-BELOW, SAME, FURTHER = 1e9, 1e-7, 60
-"""The highest frequency over the first if 0 stays open; distance of places shown as one; steps far out."""
+BELOW, SAME, FURTHER = 1e9, 1e-7, 60  # last frequency over the first; of places as one; far-out steps
 
 
 @dataclass(frozen=True)

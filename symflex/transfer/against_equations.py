@@ -80,8 +80,7 @@ def _beside(value: ExactValue | None, share: Fraction) -> ExactValue:
     return ExactValue(value.rational * (1 + share), value.pi_power)
 
 
-Values = Callable[[Point, Mapping[str, acb]], Sequence[acb]]
-"""Values at a point, where the generators of the equations have the values given."""
+Values = Callable[[Point, Mapping[str, acb]], Sequence[acb]]  # where generators have the values given
 
 
 @dataclass(frozen=True, eq=False)

@@ -39,14 +39,12 @@ from symflex.transfer.derive import derive, nested_transfer
 from symflex.transfer.lowest_terms import cancel
 from symflex.transfer.transfer_function import HiddenFactor, TransferFunction
 
-Given = int | float | Fraction | Decimal | str | ExactValue
-"""A value as a user gives it; one that was read before stays exact."""
+Given = int | float | Fraction | Decimal | str | ExactValue  # as a user gives it, or exact
 
 LOSSY_TAPER = (
     "a loss factor is",
     "give eta in seconds, a damping time constant; or divide it into uniform members, which take eta_s",
-)
-"""What is not available of members that taper, and what to do."""
+)  # what members that taper do not have, and what to do
 NAMES_SHOWN = 40  # names of parameters without value that one message lists
 
 

@@ -36,8 +36,7 @@ from symflex.transfer.enclose import constant_tangent, enclose, enclosure, first
 from symflex.transfer.enclose_kernels import fundamental_functions
 
 Powers = Sequence[tuple[str, int]]
-Plan = tuple[acb, Powers, Sequence[tuple[int, Sequence[tuple[acb, Powers]], int]]]
-"""A constant, powers of generators that are none, and sums of such terms with exponents."""
+Plan = tuple[acb, Powers, Sequence[tuple[int, Sequence[tuple[acb, Powers]], int]]]  # a constant, powers, sums
 ZERO, ONE = acb(0), acb(1)
 
 

@@ -34,9 +34,7 @@ from symflex.transfer.nested_form import (
 from symflex.transfer.transfer_function import TransferFunction
 
 EXPANDED_TERMS = 5_000  # of a closed determinant beyond which nobody reads it: over fifty pages
-EXPANDED_PRODUCTS = 500
-"""The same of a distributed model, where a term contains kernels of every member: four beams on springs have
-900, which print on 1,500 lines, three have 120."""
+EXPANDED_PRODUCTS = 500  # with kernels: four beams on springs have 900, or 1,500 lines, three 120
 READABLE_TERMS = 100  # of a formula of members beyond which its steps say more: two columns of a page
 CODE_PRODUCTS = 8  # of numeric code of members: two beams at an angle have 12, and 90 kB of code
 QUICK_PRODUCTS = 50
@@ -44,9 +42,7 @@ QUICK_PRODUCTS = 50
 Below, damping may need it: with 12 or 42 products a network's poles were not certified, 3 times as slowly."""
 CODE_MEMBERS = 4  # members up to which code of a formula keeps its digits; ten equal spans lose all
 MOST_PRODUCTS = 10_000  # beyond which nothing fits into memory: five beams have 8,000, six 70,000
-UNASKED = Terms(EXPANDED_TERMS, MOST_PRODUCTS)
-"""Limits of a distributed model's expanded form that was not asked for, counted as it is multiplied out: an
-estimate says little where one member's motion is another's."""
+UNASKED = Terms(EXPANDED_TERMS, MOST_PRODUCTS)  # of a form not asked for, counted as it is made
 SOLVED = "solved as a network: code of the formula would be long (--representation expanded)"
 SPLIT = "solved as a network: where wavenumbers meet, code of the formula would lose digits"
 NEVER_LARGE = 20  # elements of a lumped model up to which its terms are not estimated

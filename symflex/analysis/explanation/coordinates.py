@@ -36,8 +36,7 @@ from symflex.model.model import INPUT_KINDS, NetworkNode, NodeReference
 from symflex.model.network import variable_of
 from symflex.model.signs import Line
 
-Coordinates = tuple[tuple[Variable, int], ...]
-"""One coordinate, or two with opposite signs; the first counts once."""
+Coordinates = tuple[tuple[Variable, int], ...]  # one, or two with opposite signs; the first counts once
 
 PAIR = 2
 

@@ -27,8 +27,7 @@ BENDING = {(True, True): "clamped", (True, False): "pinned", (False, True): "sli
 BY_ORDERS: dict[int, dict[tuple[int, ...], str]] = {
     4: {(0, 1): "clamped", (0, 2): "pinned", (1, 3): "sliding", (2, 3): "free"},
     2: {(0,): "held", (1,): "free"},
-}
-"""Names of ends by the derivatives that vanish there, for an equation of that order in x."""
+}  # names by the derivatives that vanish there, for an equation of that order in x
 PAIR = 2
 
 

@@ -47,8 +47,7 @@ SYMBOLIC_ELEMENTS = 12  # lumped models up to this size keep their symbols, so t
 LONGEST = 100  # characters of a factor that is printed
 
 
-System = Determinants | PrimePoints
-"""What is known of a system: its determinants, or their values where these are not multiplied out."""
+System = Determinants | PrimePoints  # its determinants, or their values where these are not multiplied out
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,8 +24,7 @@ from symflex.roots.networks.disc_series import DiscSeries, ball_about_zero
 from symflex.transfer import BoundNested
 from symflex.transfer.equations_at import EssentialSingularityError
 
-Taylor = Callable[[acb, int], list[acb] | None]
-"""The Taylor coefficients of a function at a point, as many as are wanted."""
+Taylor = Callable[[acb, int], list[acb] | None]  # as many coefficients at a point as are wanted
 WIDER = 1.1  # than what holds the points asked for, the disc
 FEWEST_MODES = 3  # modes in a disc of which only the behaviour at 0 is asked for
 

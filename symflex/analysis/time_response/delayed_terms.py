@@ -27,8 +27,7 @@ from symflex.balls import at_centre, ball
 from symflex.roots.problem import PolynomialInS, RealConstant
 from symflex.transfer import BoundTransferFunction
 
-Delay = tuple[tuple[int, Fraction], ...]
-"""Positions of independent durations, ascending, and what each is multiplied with; not zero."""
+Delay = tuple[tuple[int, Fraction], ...]  # independent durations, ascending, times what is not zero
 Amplitude = dict[tuple[int, ...], Fraction]  # per exponents of s and of the constants, a number
 NO_DELAY: Delay = ()
 

@@ -254,8 +254,7 @@ class Annulus:
         return True if distance < self.radius else False if distance > self.radius else None
 
 
-Ring = tuple[Annulus, list[ExponentialTerm], arb]
-"""An annulus, what all poles within it add to a response, and a bound on what that lacks."""
+Ring = tuple[Annulus, list[ExponentialTerm], arb]  # with what its poles add, and a bound on what that lacks
 
 
 def ring_about(hole: Cell, poles: Sequence[acb]) -> Annulus | None:

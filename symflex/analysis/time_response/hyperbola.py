@@ -27,8 +27,7 @@ from symflex.errors import Diagnostic, ModelError
 from symflex.roots.distributed.far_out import SECTORS, FunctionFarOut
 from symflex.transfer import BoundTransferFunction
 
-MIDDLE, ASIDE, STEEPEST = 0.08 * pi, 0.07 * pi, 0.66 * pi
-"""Angle a of the path, how far the outermost hyperbolas are turned from it, and more than arg z on them."""
+MIDDLE, ASIDE, STEEPEST = 0.08 * pi, 0.07 * pi, 0.66 * pi  # of the path, of turned hyperbolas, beyond arg z
 TURNS = (12.0, 2000.0)  # mu times the last time on a path: the first takes fewest points, the second seconds
 BAND, SPARE = 6.0, 10.0  # ratio of last time to first on a path, and ln of bounds over values
 

@@ -50,8 +50,7 @@ BOUNDS: Mapping[str, Callable[[BoundTransferFunction, int], tuple[ModesBound, in
     "lossless modes": lossless_modes,
     "lossy modes": lossy_bound,
     "passive modes": passive_bound,
-}
-"""Bounds on the modes beyond a radius, for an impulse integrated so often, in the order of trial."""
+}  # on modes beyond a radius, for impulses integrated so often, in turn
 
 
 def proved_modes(

@@ -89,15 +89,9 @@ class Determinants:
 
 
 MINOR_LIMIT = 200_000  # minors of one system: a full matrix of 17 rows has 131,072, a chain few
-ROW_LIMIT = 700
-"""Unknowns left after elimination; systems of more are given as nested expressions. Not a measured limit:
-nested, a chain of 700 masses takes 2.4 s and 60 MB."""
-MEMORY_LIMIT = 300_000_000
-"""Bytes that all minors of a system may take together: a free chain of sixteen masses needs 270 MB. The
-engine takes almost three times as much for a while."""
-KERNEL_TERMS = 10_000
-"""Terms of one minor of a distributed system: four beams that differ in all have 2,500. The greatest common
-divisor of two of 26,000 terms takes half a minute and more than a gigabyte."""
+ROW_LIMIT = 700  # unknowns left, not measured: 700 nested masses take 2.4 s and 60 MB
+MEMORY_LIMIT = 300_000_000  # of all minors: a free chain of sixteen masses needs 270 MB
+KERNEL_TERMS = 10_000  # of a minor with kernels: four beams have 2,500; 26,000 take 1 GB
 
 Entry = TypeVar("Entry")
 Value = TypeVar("Value")

@@ -123,8 +123,7 @@ class AxisFunction:
 NONE = -1  # stands for the position of an exponential in a term without one
 ZERO = arb(0)
 Powers = tuple[tuple[int, arb], ...]  # exponents of t, and coefficients
-Term = tuple[int, int, Powers, Powers]
-"""Position of an exponential, or none, of a phase, and what its cosine and sine are multiplied with."""
+Term = tuple[int, int, Powers, Powers]  # an exponential's position or none, a phase's, and both amplitudes
 
 
 @dataclass(frozen=True, slots=True)

@@ -46,8 +46,7 @@ NO_LOSS = "waves without enough damping have poles all along the axis"
 
 PHASES = 128  # parts of a turn in which two sums are shown not to vanish together
 
-Terms = dict[Exponent, dict[Fraction, acb]]
-"""A sum of exponentials, with amplitudes that are sums of powers of s."""
+Terms = dict[Exponent, dict[Fraction, acb]]  # sums of exponentials, with sums of powers of s as amplitudes
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,8 +28,7 @@ ACCUMULATING = "poles accumulate in the right half-plane"
 DEGENERATE = "a root where wavenumbers meet may not be a pole"
 NOT_COUNTED = "the poles in the right half-plane could not be counted"
 WAVES = 10.0  # largest argument of a kernel up to which poles are counted where no end of them is known
-FURTHER, LOWER = 30.0, 3000.0
-"""Times that frequency to which roots on the axis are counted; it over that from which on none may be."""
+FURTHER, LOWER = 30.0, 3000.0  # times it up to where roots on the axis are counted; it over the first
 MARGIN = 1.01  # how far beyond the radius of a tail the path runs, so that its corners meet no root
 
 

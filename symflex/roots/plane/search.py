@@ -23,10 +23,8 @@ from symflex.roots.root import Root, count_modes
 
 MARGIN = 0.03  # how far beyond the axes cells reach [rad], so that no side lies on a row of roots
 RIGHT_HALF = 1.3  # angle of the first cut across a half-plane [rad]: to the right of lightly damped roots
-SHARES = (0.5127, 0.4631, 0.5719, 0.4213, 0.55, 0.38, 0.61)
-"""Shares at which a cell may be cut: off its middle, where symmetry puts roots."""
-NUDGES = (0.0, 0.0123, 0.0371, 0.0743, 0.113, 0.171)
-"""Shifts of a path that meets a root [in z], ever further."""
+SHARES = (0.5127, 0.4631, 0.5719, 0.4213, 0.55, 0.38, 0.61)  # where cells are cut: roots lie in middles
+NUDGES = (0.0, 0.0123, 0.0371, 0.0743, 0.113, 0.171)  # shifts of a path that meets a root [in z], in turn
 CLOSEST = 1e-11  # cells smaller than this are not split further
 SEARCH_STEPS = 30  # steps of Newton's method in doubles
 CONVERGED = 1e-11  # step [in z] after which no further one is needed
