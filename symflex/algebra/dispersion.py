@@ -59,17 +59,14 @@ class Dispersion:
     # ``+-lambda_2``; ``general``: any order, roots without a name; ``varying``: equations whose coefficients
     # vary along x, which have no exponents.
     kind: DispersionKind
-    # ``c_0, ..., c_(n-1)`` of the monic polynomial whose roots are the exponents plus ``shift``; rational in
-    # s and the parameters. Empty for ``exponential`` and ``varying``.
-    characteristic: tuple[Factored, ...]
+    characteristic: tuple[Factored, ...]  # rational ``c_0, ...`` of exponents plus ``shift``, or none
     shift: Factored  # every solution is ``exp(-shift*x)`` times one of the polynomial above; zero for most
     wavenumbers: tuple[str, ...] = ()  # none, ``(gamma,)``, ``(mu,)`` or ``(lambda_1, lambda_2)``
     matrix: tuple[tuple[Factored, ...], ...] = ()  # A in ``z' = A(x, s) z`` if it varies, and x's start
     start: tuple[Factored, ...] = ()
     singular: SingularStart | None = None  # where a stiffness vanishes at the start
     span: Span | None = None  # where such equations are written
-    # What is zero, besides s, where another law that was split from the same equations has a root of its own.
-    meets: tuple[Factored, ...] = ()
+    meets: tuple[Factored, ...] = ()  # zero where another law of the split equations has a root
 
     @property
     def order(self) -> int:

@@ -48,9 +48,7 @@ class Frame:
     """The terms of a sum with the same number of fundamental functions of every mode."""
 
     slots: tuple[int, ...]  # the mode of every function, ascending
-    # Orders of the derivatives, one per slot, symmetric in slots of the same mode, and the position of the
-    # coefficient.
-    terms: tuple[tuple[tuple[int, ...], int], ...]
+    terms: tuple[tuple[tuple[int, ...], int], ...]  # orders of derivatives by slots, and coefficients
     keys: tuple[tuple[Key, int], ...]  # products of exponentials that stay, sorted, and their divisors
 
 

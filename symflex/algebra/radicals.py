@@ -52,8 +52,7 @@ class Radicals:
     """
 
     ring: Ring  # s is its first generator
-    # Per root's position what its square is, in other generators and earlier roots; all independent.
-    squares: Mapping[int, Factored] = field(default_factory=dict)
+    squares: Mapping[int, Factored] = field(default_factory=dict)  # by place, of independent ones
     images: Mapping[int, Factored] = field(default_factory=dict)  # what roots are that depend on others
     radicands: Mapping[int, Factored] = field(default_factory=dict)  # of all roots, as they are written
     positive: frozenset[int] = frozenset()  # positions of generators that are

@@ -39,9 +39,7 @@ class Ring:
     """
 
     names: tuple[str, ...]  # generator names in order; the first one is ``s``
-    # True for :class:`~symflex.algebra.sparse.SparsePolynomial` in place of ``fmpz_mpoly``: any number of
-    # names, but no substitution and no common divisors.
-    is_sparse: bool = False
+    is_sparse: bool = False  # of any number of names, without substitution or common divisors
     context: fmpz_mpoly_ctx = field(init=False, compare=False, repr=False)
 
     def __post_init__(self) -> None:

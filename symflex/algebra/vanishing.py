@@ -32,9 +32,7 @@ class Vanishing:
 
     ring: Ring  # with the table's generators
     table: KernelTable  # wavenumbers and kernels
-    # Parameters in terms of the wavenumbers and the others, from the dispersion relations, in the order in
-    # which they can be evaluated; one that is finite where the order is asked for is used.
-    solutions: Sequence[Sequence[tuple[str, Factored]]]
+    solutions: Sequence[Sequence[tuple[str, Factored]]]  # parameters by wavenumbers and others, in order
 
     def at_zero(self, polynomial: fmpz_mpoly, wavenumber: str) -> int | None:
         """Return the order in a wavenumber at zero, s and the parameters being independent of it."""

@@ -83,8 +83,7 @@ class PowerExpansion:
     largest: arb  # values are for abs(u) up to this, or not much more
     bits: int  # to which they are exact, relative to minors that grow
     orders: int  # in u that are kept; 0 where they follow from the bits
-    # How minors of so many rows grow, on the disc of u on which solutions are bounded.
-    _growths: dict[int, Growth] = field(default_factory=dict, repr=False)
+    _growths: dict[int, Growth] = field(default_factory=dict, repr=False)  # by minors' rows
     _made: dict[tuple[Lines, Lines], Polynomial] = field(default_factory=dict, repr=False)
     _cuts: dict[tuple[Lines, Lines, int, int], DiscPolynomial] = field(default_factory=dict, repr=False)
     # Logarithms of bounds on minors, and of the sizes of their coefficients.
@@ -228,8 +227,7 @@ class DiscPolynomial:
 
     polynomial: Polynomial
     left: arb  # bounds the rest on the disc, and a little beyond it
-    # Derivatives over the factorials of their orders, and those of the sizes of coefficients.
-    _derived: list[Polynomial] = field(default_factory=list, repr=False)
+    _derived: list[Polynomial] = field(default_factory=list, repr=False)  # over factorials
     _sized: list[arb_poly] = field(default_factory=list, repr=False)
 
     def series(self, u: Number, terms: int) -> list[Number]:

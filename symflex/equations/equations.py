@@ -47,8 +47,7 @@ class Continuum:
     length: Factored
     initial: tuple[Variable | None, ...]  # per state, the unknown it equals at the start; None if zero
     loads: tuple[Variable, ...] = ()  # what acts all along it, per column of ``system.loads``
-    # Of a line element, per state, the unknown it equals at the end, and the sign with which it does.
-    final: tuple[tuple[Variable | None, int], ...] = ()
+    final: tuple[tuple[Variable | None, int], ...] = ()  # per state, unknown at the end, and sign
     parts: tuple[tuple[tuple[int, ...], Dispersion], ...] = ()  # coupled states, and their law
 
 

@@ -58,9 +58,7 @@ class RootLocus:
     branches: tuple[tuple[complex, ...], ...]  # curves [rad/s] from poles at first; not proved
     arrived: bool  # every curve ends next to a certified pole at the last gain, and no two at the same
     ends: tuple[complex, ...] = ()  # certified poles at last [rad/s] to which any curve goes
-    # Curves to poles at the last gain from where none is marked: from infinity, as those of a delay, from
-    # higher modes at the first gain, or from where poles accumulate.
-    entering: tuple[tuple[complex, ...], ...] = ()
+    entering: tuple[tuple[complex, ...], ...] = ()  # from nowhere marked, to last poles
     nominal: tuple[Fraction, PoleZeroMap] | None = None  # the gain and its poles, if within
 
     def __repr__(self) -> str:

@@ -45,9 +45,7 @@ class LumpedFactor:
     odd: fmpz_mpoly
     common: fmpz_mpoly  # the greatest common factor of E and O
     loop: Loop | None = None  # whose factor it is
-    # Functions of the gain in the factor, which follow it in the ring unless all are powers of one
-    # root of the gain, whose place that root takes; and the range examined.
-    functions: GainFunctions | None = None
+    functions: GainFunctions | None = None  # in the ring, or powers of one root in its place
     limits: tuple[Fraction, Fraction] = (Fraction(0), Fraction(0))
 
     @classmethod

@@ -81,9 +81,7 @@ class AllowedCrossover:
     """The frequency at which the loop gain falls below one, with a gain margin of 6 dB."""
 
     gain: Fraction | None  # the largest gain with that margin; ``None`` when every gain is stable
-    # At which the loop gain first falls below one [rad/s]; ``None`` when there is no such gain, or when the
-    # loop gain is below one at the lowest frequencies.
-    frequency: arb | None
+    frequency: arb | None  # where the loop gain first falls below one [rad/s]; None if nowhere
     phase_margin: arb | None  # the smallest one there in absolute value [rad], positive for lag
     is_limited: bool  # by a boundary: twice the gain is one. Otherwise the gains examined end there.
 
@@ -105,11 +103,8 @@ class StabilityMap(Printed):
     reasons: tuple[str, ...] = ()  # what is open, and why
     digits: int = 15  # asked for
     crossover: AllowedCrossover | None = None  # which stable gains next to 0 allow, of one loop
-    # Which phase margins beyond the radius are not below [rad], where no more than that is known of them.
-    margin_beyond: float | None = None
-    # How poles were counted: ``polynomials``, ``argument principle``, ``roots``, ``passive loop``; ``boxes``
-    # of a parameter that need not be a gain.
-    method: str = ""
+    margin_beyond: float | None = None  # phase margins beyond are no smaller [rad], if no more is known
+    method: str = ""  # polynomials, argument principle, roots, passive loop; boxes if no gain
     apart: PolesApart = NOTHING_APART  # poles that no gain moves: hidden ones are not in ``intervals``
     at_nominal: StabilityVerdict | None = None  # what holds there alone, if ``intervals`` leave it open
     tf: str = ""  # ``"OUT/IN"``, which sees the poles that are not hidden; empty where nothing is
@@ -340,9 +335,7 @@ class Crossing:
     """A gain at which poles may pass from one side of the imaginary axis to the other."""
 
     gain: arb  # enclosure of the gain
-    # Enclosures of omega >= 0 [rad/s] at which poles are on the axis; exactly 0 where they pass through s =
-    # 0.
-    frequencies: tuple[arb, ...]
+    frequencies: tuple[arb, ...]  # of poles on the axis [rad/s], exactly 0 where they pass through it
     is_infinite: bool = False  # a pole passes through infinity: the highest power of s vanishes
     is_symmetric: bool = False  # poles that mirror each other for every gain meet on the axis
     is_singular: bool = False  # the equations have no unique solution there

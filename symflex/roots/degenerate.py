@@ -62,8 +62,7 @@ class DegeneratePoints:
 
     bound: BoundTransferFunction
     roots: Sequence[Root]
-    # How many poles and hidden modes lie at points of the upper half-plane; ``None`` where that is not known.
-    _counts: dict[complex, tuple[int, int] | None] = field(default_factory=dict)
+    _counts: dict[complex, tuple[int, int] | None] = field(default_factory=dict)  # by point; None unknown
 
     @cached_property
     def distinct(self) -> list[Root]:

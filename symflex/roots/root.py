@@ -28,9 +28,7 @@ TOUCHING = "some roots could not be separated"  # why roots that are all enclose
 class RootDecimals:
     """A root in decimals: the true root lies within ``radius`` of ``re + j im``."""
 
-    # re and im: decimal strings; ``"0"`` when the component is exactly zero, ``"0e-15"`` when it cannot be
-    # distinguished from 0.
-    re: str
+    re: str  # re and im: ``"0"`` when exactly zero, ``"0e-15"`` when it may be
     im: str
     radius: str  # distance bound, rounded up, such as ``"3.1e-52"``; ``"0"`` when the print is exact
 

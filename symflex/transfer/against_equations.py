@@ -89,8 +89,7 @@ class Agreement:
 
     pair: tuple[str, str]
     values: Values  # by every form there is; the equations give each
-    # The denominator times what cancelled from it, which is the determinant of a lumped model.
-    determinant: Callable[[Point, Mapping[str, acb]], acb] | None = None
+    determinant: Callable[[Point, Mapping[str, acb]], acb] | None = None  # of a lumped model's equations
 
 
 def compare(

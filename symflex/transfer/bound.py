@@ -133,8 +133,7 @@ class BoundTransferFunction:
     values: tuple[tuple[str, ExactValue], ...]  # every parameter's value, in declared order
     ratio: Factored  # over a ring with generators s, pi and the functions of constants
     hidden: tuple[HiddenFactor, ...]  # factors cancelled symbolically or by these values, over the same ring
-    # The wavenumbers and kernels of a distributed system: generators of the ring after the constants.
-    kernels: KernelTable = NO_KERNELS
+    kernels: KernelTable = NO_KERNELS  # of distributed parts, after the constants in the ring
     parts: tuple[Factored, Factored] | None = None  # of a distributed system, :attr:`num` and :attr:`den`
     is_of_model: bool = True  # its poles are those of the source's model; not so of a loop gain
     is_of_s: bool = True  # a root of s that stands in place of s is one; else it is the variable itself

@@ -95,9 +95,7 @@ class TransferFunction:
     solves_network: ClassVar[bool] = False  # values are those of the formula
     output: Output  # what is measured
     input: Input  # what drives
-    # Numerator over denominator; every factor of one is coprime to every factor of the other. None when it is
-    # that of ``closed``, which is then opened when it is first asked for: see :attr:`ratio`.
-    reduced: Factored | None
+    reduced: Factored | None  # in lowest terms; None if that of ``closed``, to be opened
     closed: ClosedForm | None  # the compact form; None when it could not be reduced without opening its sums
     hidden: tuple[HiddenFactor, ...]  # the common factors in s that were cancelled
     quantity: str  # ``receptance``, ``mobility``, ...

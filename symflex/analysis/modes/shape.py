@@ -92,9 +92,7 @@ class DistributedShape:
     # part before it: ``y theta f tau`` of a beam, ``x y theta f_x f_y tau`` of a frame, ``u f`` of a rod,
     # ``theta tau`` of a shaft, ``w f`` of a string. Of a field, its unknowns and derivatives: ``w w' w''``.
     states: tuple[str, ...]
-    # ``dz/dx = matrix z + load``, from ``initial`` on. Where coefficients vary along x there is no matrix,
-    # and ``load`` is the values of the loads.
-    matrix: tuple[tuple[acb, ...], ...]
+    matrix: tuple[tuple[acb, ...], ...]  # ``dz/dx = matrix z + load``; none if it varies, loads then
     load: tuple[acb, ...]
     initial: tuple[acb, ...]
     start: arb  # where x begins [m]

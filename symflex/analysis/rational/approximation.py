@@ -218,19 +218,14 @@ class RationalEvaluator:
 class Approximant:
     """A rational function R with real coefficients, as a form makes it."""
 
-    # poles and zeros: [rad/s], as often as their multiplicity says, both members of each conjugate pair; the
-    # zeros of a modal form are near, not on, those of G.
-    poles: tuple[mpmath.mpc, ...]
+    poles: tuple[mpmath.mpc, ...]  # poles and zeros [rad/s], repeated; modal zeros are near those of G
     zeros: tuple[mpmath.mpc, ...]
     gain: mpmath.mpf  # what ``(s - z).../(s - p)...`` is multiplied with
-    # num and den: coefficients in descending powers of s, ``den`` beginning with 1.
-    num: tuple[mpmath.mpf, ...]
+    num: tuple[mpmath.mpf, ...]  # num, den: coefficients in descending powers, ``den`` from 1 on
     den: tuple[mpmath.mpf, ...]
     evaluator: RationalEvaluator  # R in double precision
     residues: tuple[PrincipalPart, ...] = ()  # of the modal form, its principal parts
-    # Of the modal form, what is added to them, in ascending powers of s; one constant, the static correction
-    # of the modes left out, unless G is a rational function that grows with s.
-    correction: tuple[mpmath.mpf, ...] = ()
+    correction: tuple[mpmath.mpf, ...] = ()  # in ascending powers: the modes left out, and growth
     is_estimate: bool = False  # some pole, zero or residue is not proved
 
 

@@ -65,9 +65,7 @@ class RootDerivative:
     root: Root  # the root
     parameter: ModelParameter  # what varies
     value: ExactValue  # the parameter's value [its unit]
-    # ``certified``: the derivative is proved to lie in its ball. ``multiple``: roots coincide and part when
-    # the parameter changes, so that there is no derivative. ``undecided``: it could not be enclosed.
-    status: Status
+    status: Status  # proved, without one as roots coincide and part, or not enclosed
     place: acb  # the root, perhaps closer than in ``root`` [rad/s]
     derivative: acb | None = None  # ds/dp [rad/s per unit of the parameter]
 

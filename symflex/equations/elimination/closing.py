@@ -38,9 +38,7 @@ class Closure:
     """A ring with one generator per closed sum, and the way back."""
 
     base: Ring  # s, parameters, definitions, pi, functions of constants
-    # Those of the same generators that stand outside closed sums, s and pi in any case, and then the sums: a
-    # monomial takes a byte per generator.
-    ring: Ring
+    ring: Ring  # generators outside of closed sums, s, pi and the sums: a byte each per monomial
     sums: tuple[tuple[str, fmpz_mpoly], ...]  # each closed generator's name and its polynomial in ``base``
 
     @cached_property

@@ -52,8 +52,7 @@ class CramerEquations:
     # By size: pivots, and the bits they were chosen at.
     _orders: dict[int, tuple[Sequence[tuple[int, int]], int]] = field(default_factory=dict)
     _least_bits: int = 0  # with fewer, elimination came to nothing
-    # By radius [rad/s], the mean of ln abs of denominator and numerator on a circle.
-    sizes: dict[float, tuple[float, float]] = field(default_factory=dict)
+    sizes: dict[float, tuple[float, float]] = field(default_factory=dict)  # by radius [rad/s], mean ln abs
 
     @staticmethod
     def of(

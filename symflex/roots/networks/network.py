@@ -57,9 +57,7 @@ class Network:
     size: int  # unknowns
     entries: Mapping[tuple[int, int], Factored]  # of M, symmetric, i <= j; even in s
     members: tuple[NetworkMember, ...]
-    # What the input drives, and what the output reads, by unknown; without powers of s. Empty where these are
-    # not motions and forces of nodes, or rates of them.
-    driven: Mapping[int, Factored]
+    driven: Mapping[int, Factored]  # by unknown, with what is read; empty for other quantities
     read: Mapping[int, Factored]
     below: int  # powers of s in front of determinant, and of that bordered by input and output
     above: int
