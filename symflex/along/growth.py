@@ -246,10 +246,7 @@ def _steps(system: VaryingSystem, start: arb, end: arb, largest: arb, bits: int)
 
 
 def _first_step(beginning: SingularBeginning, start: arb, end: arb, reach: arb, bits: int) -> Leg:
-    """Return the longest step from a start where coefficients have poles that costs not too many terms.
-
-    It is a sixth of the radius on which coefficients are bounded, and a third of that on which solutions are.
-    """
+    """Return a first step of few terms: a sixth of the coefficients' radius, a third of solutions'."""
     whole = abs(end - start)
     for k in range(MOST_HALVINGS):
         radius = (whole * FIRST_SHARE / 2**k).upper()

@@ -48,11 +48,7 @@ class Terms:
 
 
 def derive(equations: Equations, output: str, source: str) -> TransferFunction:
-    """Return one transfer function.
-
-    Raises ModelError: SF30x when the equations are singular, with the reason; BudgetError: SF50x when the
-    closed form would be too large; InternalError: SF991 when it is not what the equations say.
-    """
+    """Return one transfer function; SF30x of singular equations, SF50x too large, SF991 if they disagree."""
     return derive_all(equations, ((output, source),))[0]
 
 

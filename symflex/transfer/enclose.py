@@ -75,15 +75,10 @@ def enclose(expression: Expression, values: Mapping[str, Callable[[], arb]]) -> 
     result = _enclose(expression, values)
     if not result.is_finite():
         message = f"'{format_expression(expression)}' is not a finite real number for these values"
-        raise ModelError(Diagnostic("SF228", message, expression.span, _imaginary_hint(expression)))
+        # The root of a negative number may stand for j.
+        is_j = isinstance(expression, Call) and expression.name == "sqrt" and not names(expression.argument)
+        raise ModelError(Diagnostic("SF228", message, expression.span, IMAGINARY_UNIT if is_j else None))
     return result
-
-
-def _imaginary_hint(expression: Expression) -> str | None:
-    """Name j where the root of a negative number stands for it."""
-    if isinstance(expression, Call) and expression.name == "sqrt" and not names(expression.argument):
-        return IMAGINARY_UNIT
-    return None
 
 
 def _enclose(expression: Expression, values: Mapping[str, Callable[[], arb]]) -> arb:

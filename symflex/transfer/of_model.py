@@ -268,10 +268,7 @@ def derive_for_roots(
 def derive_if_small(
     model: Model, pair: tuple[str, str], *, is_quick: bool = False
 ) -> BoundTransferFunction | None:
-    """Return a distributed transfer function in expanded form; None where it is too large or not so quick.
-
-    Estimates say far too much where members are alike: those of a beam in four parts multiply out to one.
-    """
+    """Return a distributed function in expanded form; None where it is too large or not so quick."""
     if _may_be_large(model) and _expanded_terms(assemble_sparse(model), pair) > MOST_PRODUCTS:
         return None
     (expanded,) = _expanded_unless_large(model, [pair], UNASKED) or (None,)

@@ -209,7 +209,7 @@ Form = Callable[["AnyBoundFunction", KeptRoots, int], Approximant]
 def product_form(bound: AnyBoundFunction, kept: KeptRoots, digits: int) -> Approximant:
     """Return the product over kept poles and zeros, right to the leading order at s = 0; SF405 if unknown."""
     start = expand_at_zero(bound, -(10**6), digits)
-    order = _order_at_zero(kept.zeros) - _order_at_zero(kept.poles)
+    order = count_roots(r for r in kept.zeros if r.is_zero) - count_roots(r for r in kept.poles if r.is_zero)
     if order != start.order:
         message = f"the order of {bound.name} at s = 0 is {order} or {start.order}"
         raise UncertifiedError(Diagnostic("SF405", message))
@@ -279,10 +279,6 @@ def modal_form(bound: AnyBoundFunction, kept: KeptRoots, digits: int) -> Approxi
 
 
 FORMS: dict[str, Form] = {"product": product_form, "modal": modal_form}
-
-
-def _order_at_zero(roots: Sequence[Root]) -> int:
-    return sum(root.multiplicity for root in roots if root.is_zero)
 
 
 def _repeated(roots: Sequence[Root]) -> list[acb]:

@@ -176,7 +176,7 @@ def _quotient(
         if known is None:
             if apart is None:
                 return "longer"
-            if not _all_zero(coefficients[:apart]) and current_bits() < DETECTION_BITS:
+            if not all(c == 0 for c in coefficients[:apart]) and current_bits() < DETECTION_BITS:
                 return "finer"
             firsts.append(apart)
             continue
@@ -202,14 +202,10 @@ def _quotient(
     quotient = tuple(total[branches * i] for i in range(count))
     # A factor is of the order found where the coefficients before it are nothing but zero.
     is_estimate = any(
-        known is None and not _all_zero(coefficients[:first])
+        known is None and not all(c == 0 for c in coefficients[:first])
         for coefficients, known, first in zip(series, orders, firsts, strict=True)
     )
     return LaurentSeries(order, tuple(acb(about_zero(c.real)) for c in quotient), is_estimate)
-
-
-def _all_zero(coefficients: Sequence[acb]) -> bool:
-    return all(c == 0 for c in coefficients)
 
 
 def expand_at_pole(

@@ -170,10 +170,7 @@ class RationalFunction(ABC):
 
 
 class ExactFunction(RationalFunction):
-    """A bound transfer function that is rational; SF235 for one that is not.
-
-    With ``is_minimal``, uncontrollable and unobservable states are left out of state equations.
-    """
+    """A bound rational function, else SF235; ``is_minimal`` leaves unseen states out of equations."""
 
     def __init__(self, bound: BoundTransferFunction, *, is_minimal: bool = False) -> None:
         check_causal(bound.source.model, "a system of a toolbox")
@@ -254,11 +251,7 @@ def frequency_response_data(
     label: str,
     metadata: dict[str, object],
 ) -> object:
-    """Return a ``control.FrequencyResponseData`` of values at s = j omega.
-
-    ``omega`` [rad/s] increases and is nowhere negative. SF902 when python-control is not installed, for other
-    frequencies, and at a pole.
-    """
+    """Return a ``control.FrequencyResponseData`` at ``omega`` [rad/s]; SF902 without it, or at a pole."""
     control = installed("control")
     grid = real_numbers(omega, "omega")
     is_increasing = grid.ndim == 1 and bool(np.all(np.diff(grid) > 0))

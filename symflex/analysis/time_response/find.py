@@ -320,10 +320,7 @@ def _closely(
 
 
 def _taken_apart(bound: BoundTransferFunction) -> list[tuple[Delays, BoundTransferFunction]]:
-    """Return a function as parts that come after delays, each as often as told; delays of loops stay in them.
-
-    So it is with sensors that are late: ``(1 + exp(-s T)) w(l)/F``.
-    """
+    """Return a function as parts after delays, as of late sensors: ``(1 + exp(-s T)) w(l)/F``."""
     ring, table = bound.ratio.ring, bound.kernels
     delays = {ring.index[k.generator]: k for k in table.kernels if k.dispersion.kind == "exponential"}
     if any(bound.den.exponent_of(ring.generator(k.generator)) > 0 for k in delays.values()):

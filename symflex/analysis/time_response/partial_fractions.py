@@ -147,11 +147,7 @@ def _taylor(factors: Sequence[tuple[acb_poly, int]], centre: acb, count: int) ->
 
 
 def at_infinity(quotient: EnclosedQuotient, integrations: int) -> tuple[tuple[arb, ...], arb]:
-    """Return the polynomial part of a quotient over ``s^integrations``, and the coefficient of 1/s after it.
-
-    In time these are the weights of an impulse and its derivatives, and the value just after t = 0. A leading
-    coefficient whose ball contains zero counts as what it is, unless it is exactly zero.
-    """
+    """Return the weights of impulses, a quotient's polynomial part, and the coefficient of 1/s after it."""
     num, den = quotient.multiplied_out()
     surplus = int(num.degree()) - int(den.degree()) - integrations
     if surplus < -1:

@@ -80,13 +80,8 @@ class StepInfo:
     def missing(self) -> int:
         """How many of the properties are not found."""
         has_none = self.overshoot is not None and self.overshoot.contains(0)
-        wanted = (
-            self.overshoot,
-            self.rise_time,
-            self.settling_time,
-            *(() if has_none else (self.peak_time,)),
-        )
-        return sum(each is None for each in wanted)
+        wanted = (self.overshoot, self.rise_time, self.settling_time)
+        return sum(x is None for x in wanted) + (self.peak_time is None and not has_none)
 
     def __repr__(self) -> str:
         shown = (f"{name.partition(',')[0]} {value}" for name, value in self._shown(SHORT_DIGITS))

@@ -216,10 +216,7 @@ class _AtInfinity:
 
     @classmethod
     def on(cls, waves: WaveQuotient, x: Value, origin: _AtInfinity | None = None) -> _AtInfinity | None:
-        """Return the place; None if wavenumbers over s are not analytic.
-
-        A ball is one on a circle about the ``origin``, at which ``spread`` is not known.
-        """
+        """Return the place, on a circle about the ``origin`` without ``spread``; None if not analytic."""
         values = waves.values
         roots: dict[str, Value] = {}
         for law in values.evaluator.table.dispersions:

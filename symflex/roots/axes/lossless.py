@@ -66,10 +66,7 @@ class SignChange:
 
 
 class LosslessSearch:
-    """Searches one undamped function, real but for a constant factor on both axes, factor by factor.
-
-    What is not real is left to a count. ``order`` is that at s = 0; ``reached`` is ln of a radius.
-    """
+    """Searches one undamped function, real on both axes but for a constant, factor by factor."""
 
     def __init__(self, function: LosslessFunction, order: int, digits: int) -> None:
         self.function = function

@@ -66,10 +66,7 @@ class LogarithmicLine:
 
 
 class CertifiedWinding(Winding[E_co]):
-    """Follows one function along paths with proof; every step spends.
-
-    With ``tries_series``, power series are tried before shorter steps, as next to points where waves meet.
-    """
+    """Follows one function along paths with proof; with ``tries_series`` by power series, too."""
 
     def __init__(self, function: E_co, *, tries_series: bool = False) -> None:
         super().__init__(function)

@@ -74,13 +74,7 @@ class LocalSeries:
 
 
 def local_series(function: Entire, centre: acb, reach: arb, bits: int, points: int) -> LocalSeries | None:
-    """Return a function's series about an exact point, ``None`` where it cannot be bounded on the circle.
-
-    What is expanded is the function's :attr:`~symflex.roots.functions.entire.Entire.power`.
-    ``reach`` is the exact radius of the circle on which it is bounded [rad/s], ``bits`` the precision of the
-    coefficients. Values are taken at so many ``points``; each makes the error that comes of their number
-    smaller by ``2^-6``.
-    """
+    """Return a series of a function's power about a point, bounded on a circle, or ``None``."""
     bound = bound_on_circle(function, centre, reach, ARCS)
     if bound is None:
         return None
@@ -90,10 +84,7 @@ def local_series(function: Entire, centre: acb, reach: arb, bits: int, points: i
 def sampled_series(
     function: Entire, centre: acb, reach: arb, bound: arb, bits: int, points: int, terms: int, shrunk: float
 ) -> LocalSeries | None:
-    """Return a function's series about a point from values on a circle, ``None`` where these are not finite.
-
-    ``bound`` is that on the circle of radius ``reach``, and ``shrunk`` the radius of the values' one over it.
-    """
+    """Return a series about a point from values on a ``shrunk`` circle and a ``bound``, or ``None``."""
     with precision(bits):
         radius = (reach * shrunk).mid()
         roots = [(acb(0, 2) * arb.pi() * k / points).exp() for k in range(points)]

@@ -220,10 +220,7 @@ SPREAD = 2.0**-50  # relative width that makes up for the rounding of a step's m
 
 
 def total_turn(change: Callable[[float, float], tuple[float, arb]], first: float, smallest: float) -> arb:
-    """Return the change of an argument along a path from t = 0 to 1.
-
-    ``change`` returns of a step a bound on the deviation from its middle, and the turn from end to end.
-    """
+    """Return the change of an argument from t = 0 to 1, by bounds and turns that ``change`` has of steps."""
     total = arb(0)
     t, step = 0.0, first
     longest = inf

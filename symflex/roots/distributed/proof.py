@@ -252,10 +252,7 @@ def roots_at_zero(
     *,
     is_hidden: bool,
 ) -> tuple[list[Root], int]:
-    """Return the root at s = 0, and how often the function without powers of s winds about 0 there.
-
-    ``part`` is the product with them; of what is hidden these alone count. SF404 if no circle can be counted.
-    """
+    """Return the root at s = 0 of ``part``, and the turns of the function without powers of s; SF404."""
     function = winding.function
     power = function.power
     s = part.ring.context.gen(0)

@@ -50,10 +50,7 @@ def search_right(
     digits: int,
     limit: float | None = None,
 ) -> RightHalfPlane:
-    """Count the roots of a function with kernels in the right half-plane, and find them.
-
-    All roots are ``known`` up to ``reached`` [rad/s], and none lies there beyond a ``limit`` that is given.
-    """
+    """Count and find the roots on the right: all are ``known`` to ``reached``, none is beyond a ``limit``."""
     if side.is_finite:
         return RightHalfPlane(tuple(known))
     if any(hole.right < pi / 2 for hole in side.holes):

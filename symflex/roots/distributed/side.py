@@ -53,10 +53,7 @@ MORE_DIGITS = 30  # digits beyond twice those asked for, in which a pole and a z
 
 
 class Side:
-    """The numerator, the denominator, or what cancelled between them.
-
-    What one of the ``engines`` cannot do is left to the next; so many roots are ``missing``: not found.
-    """
+    """The numerator, the denominator, or what cancelled; one of the ``engines`` follows the other."""
 
     def __init__(
         self,

@@ -45,10 +45,7 @@ MODAL_WORK = 0.15  # what sums over characteristic roots cost, in terms, over th
 
 @dataclass(eq=False)
 class KernelFunction:
-    """A product of powers of polynomials in s, wavenumbers and kernels.
-
-    ``part**power`` has one value whichever branch a wavenumber takes; ``work`` counts terms evaluated so far.
-    """
+    """A product of powers of polynomials in s, wavenumbers and kernels; ``part**power`` has one value."""
 
     bound: BoundTransferFunction  # whose ring and kernels they are
     part: Factored  # factors of s, of wavenumbers and of kernels; entire together
@@ -142,10 +139,7 @@ class KernelFunction:
 
     @cached_property
     def cancels(self) -> bool:
-        """Some kernels are sums over roots that have no names, or entries along one law multiply each other.
-
-        The motion within a tapered member is such a difference of products, e^(2 L) times smaller.
-        """
+        """Some kernels are sums over nameless roots, or products of entries cancel: by e^(2 L)."""
         ring, kernels = self.part.ring, self.bound.kernels.kernels
         if any(k.function == "fundamental" and self.part.depends_on(k.generator) for k in kernels):
             return True

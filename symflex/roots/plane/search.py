@@ -46,10 +46,7 @@ class Found:
 
 
 class RootSearch:
-    """Searches one function with at least one kernel, but for holes in which roots accumulate.
-
-    Roots lie in the upper half-plane, of even functions in its right quadrant, up to ln(abs(s)) ``reached``.
-    """
+    """Searches one function with at least one kernel, but for holes in which roots accumulate."""
 
     def __init__(self, winding: Winding[Entire], holes: Sequence[Cell], digits: int) -> None:
         self.function = winding.function
