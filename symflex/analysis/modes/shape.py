@@ -212,7 +212,7 @@ class EnclosedModeShape:
     motions: tuple[Motion, ...]  # one for every unknown of the equations
     distributed: tuple[DistributedShape, ...]  # of every beam, rod, shaft, string and field
     reference: str  # what is 1: a node, or ``element(x)`` with the place; of a frame ``element.y(x)``
-    certified: bool  # the pole is certified, and has no other shape: balls hold the true amplitudes
+    certified: bool  # the pole is certified, and has no other shape: balls contain true amplitudes
 
     def __repr__(self) -> str:
         return f"<EnclosedModeShape at {self.pole.frequency_hz():.6g} Hz, {self.reference} = 1>"
