@@ -40,6 +40,7 @@ from symflex.letters.limits import (
 )
 from symflex.library.elements import LineElement
 from symflex.model import ExactValue, with_numbers
+from symflex.model.linearity import factored_of
 from symflex.model.model import ModelParameter
 from symflex.print.forms import print_form
 from symflex.print.forms.naming import Naming
@@ -216,10 +217,10 @@ def _invariants(tf: TransferFunction) -> tuple[list[Exponents], Exponents]:
         rate = {k.wavenumber: ONE} if k.wavenumber else powers(k.dispersion.shift)
         rows.append(times((rate, ONE), (powers(k.length), ONE)))
     for constant in tf.constants:
-        inside = _exponents(constant.expression)
-        rows.append(times(({constant.generator: ONE}, ONE), (inside or {}, -ONE)))
-        used = [n.name for n in e.names(constant.expression) if isinstance(n, Name)]
-        rows += [{name: ONE} for name in used if inside is None]
+        is_root, inside = constant.expression.name == "sqrt", constant.expression.argument
+        squared = powers(factored_of(inside, tf.ratio.ring)) if is_root else {}
+        rows.append(times(({constant.generator: Fraction(2)}, ONE), (squared, -ONE)))
+        rows += [{n.name: ONE} for n in e.names(inside) if isinstance(n, Name) and not is_root]
     return rows, scale
 
 

@@ -60,6 +60,17 @@ CASES: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
         {"R": "10 Ohm", "L": "1 mH", "C": "1 uF"},
         {"y/U": "1/(S**2 + 2*zeta*S + 1)", "scale": "1", "S": "s*sqrt(L*C)", "zeta": "R*sqrt(C/L)/2"},
     ),
+    "root of a sum": (
+        SIGNALS + 'y = "u/(s^2 + 2*z*sqrt(k/m + g/l)*s + k/m + g/l)"',
+        {**OF_BODY, "l": "0.1 m", "g": "9.81 m/s^2", "z": "0.02"},
+        {
+            "y/u": "1/(S**2 + 2*Pi_1*sqrt(1 + Pi)*S + 1 + Pi)",
+            "scale": "m/k",
+            "S": "s*sqrt(m/k)",
+            "Pi": "g*m/(k*l)",
+            "Pi_1": "z",
+        },
+    ),
     "cantilever": (BEAM + TIP, OF_BEAM, {"scale": "l**3/(E*I)", "S": OMEGA}),
     "loaded cantilever": (
         BEAM
