@@ -11,7 +11,7 @@ changes that each makes alone.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from math import inf
@@ -30,7 +30,9 @@ from symflex.print.forms.printed import PrintedForm, S
 from symflex.print.forms.shapes import of_powers, plain, powers_of, rebuilt
 from symflex.transfer.enclose import enclose
 
-Parts = tuple[e.Expression, ...]  # a numerator, a denominator, and lines
+NUM, DEN = "", "/"
+Parts = dict[str, e.Expression]
+"""Numerator, denominator and the lines below, by their names."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,39 +46,22 @@ class NestedForm:
     @property
     def parts(self) -> Parts:
         """What is printed."""
-        return (self.form.num, self.form.den, *(line for _, line in self.form.where))
+        return {NUM: self.form.num, DEN: self.form.den, **dict(self.form.where)}
 
-    @property
-    def terms(self) -> list[Parts]:
-        """Every term, after the sum that it stands in."""
-        sums = dict.fromkeys(n for x in self.parts for n in e.nodes(x) if isinstance(n, e.Sum))
-        return [(total, term) for total in sums for term in total.terms]
-
-    def lines(self, parts: Parts) -> dict[str, e.Expression]:
-        """Return what names stand for."""
-        return dict(zip(dict(self.form.where), parts[2:], strict=True))
-
-    def opened(self, parts: Parts, expressions: Sequence[e.Expression] = ()) -> Parts:
-        """Return expressions, numerator and denominator by default, with the lines put in."""
-        where, opened = self.lines(parts), tuple(expressions or parts[:2])
-        for _ in where:
-            opened = tuple(e.substitute(each, where) for each in opened)
-        return opened
-
-    def sides(self, parts: Parts, constants: Sequence[ConstantFunction] = ()) -> list[Factored]:
-        """Return numerator and denominator over the ring and more functions."""
-        ring = Ring((*self.ring.names, *(c.generator for c in constants))) if constants else self.ring
-        return [factored_of(part, ring) for part in self.opened(parts)]
-
-    def constants(self, parts: Parts) -> tuple[ConstantFunction, ...]:
-        """Return the functions of constants that the ring lacks, as sums in them have lost terms."""
-        every = (n for part in self.opened(parts) for n in e.nodes(part) if isinstance(n, e.Call))
-        named = {e.format_expression(call): call for call in every}
-        return tuple(ConstantFunction(n, call) for n, call in named.items() if n not in self.ring.index)
+    def sides(self, parts: Parts) -> tuple[tuple[ConstantFunction, ...], Factored, Factored]:
+        """Return functions that the ring lacks, as sums in them lost terms, and both sides with them."""
+        num, den = sides = [_opened(parts[side], parts) for side in (NUM, DEN)]
+        calls = {e.format_expression(n): n for x in sides for n in e.nodes(x) if isinstance(n, e.Call)}
+        more = tuple(ConstantFunction(n, call) for n, call in calls.items() if n not in self.ring.index)
+        ring = Ring((*self.ring.names, *(each.generator for each in more))) if more else self.ring
+        return more, factored_of(num, ring), factored_of(den, ring)
 
     def without(self, most: float, other: Callable[[Parts], float]) -> list[tuple[Parts, float]]:
         """Return forms without one more term each time; nothing changes by more, nor ``other`` says more."""
-        alone = [(self.change(_less(self.parts, *each)), each) for each in self.terms]
+        sums = dict.fromkeys(n for x in self.parts.values() for n in e.nodes(x) if isinstance(n, e.Sum))
+        every = [(total, term) for total in sums for term in total.terms]
+        alone = [(self.change(_less(self.parts, *each)), each) for each in every]
+        order: list[tuple[e.Expression, e.Expression]]
         order = [each for change, each in sorted(alone, key=lambda pair: pair[0]) if change <= most]
         found: list[tuple[Parts, float]] = []
         while order:
@@ -85,13 +70,16 @@ class NestedForm:
             change = self.change(parts) if isinstance(total, e.Sum) else inf
             if max(change, other(parts) if change <= most else inf) <= most:
                 found.append((parts, change))
-                order = [_less(pair, total, term) for pair in order]
-        return [(tuple(self._tidied(part, parts) for part in parts), change) for parts, change in found]
+                pairs = [_less({"total": x, "term": y}, total, term) for x, y in order]
+                order = [(pair["total"], pair["term"]) for pair in pairs]
+        return [({n: self._tidied(x, parts) for n, x in parts.items()}, change) for parts, change in found]
 
     def change(self, parts: Parts) -> float:
         """Return the largest relative change of a coefficient of s, rounded up."""
         try:
-            pairs = [*zip(self._polynomials(self.parts), self._polynomials(parts), strict=True)]
+            pairs = [
+                (self._polynomial(self.parts, side), self._polynomial(parts, side)) for side in (NUM, DEN)
+            ]
         except (TypeError, ArithmeticError, ModelError):  # over s, or of functions that are not defined there
             return inf
         if any(x.degree() != y.degree() for x, y in pairs):
@@ -99,27 +87,26 @@ class NestedForm:
         every = [each for x, y in pairs for each in zip(x.coeffs(), y.coeffs(), strict=True)]
         return max(0.0 if x == 0 and y == 0 else upper(abs((y - x) / x)) for x, y in every)
 
-    def _polynomials(self, parts: Parts) -> list[arb_poly]:
+    def _polynomial(self, parts: Parts, side: str) -> arb_poly:
         values = {name: partial(arb, value) for name, value in self.values.items()}
-        s, power = arb_poly([0, 1]), lambda base, n: base ** (integer_exponent(n) or -1)
-        in_balls = partial(e.fold, number=lambda x: arb_poly([ball(x)]), power=power, quotient=_divided)
-        name, call = (
-            (lambda n: s if n == LAPLACE else arb_poly([self.values[n]])),
-            lambda c, _: arb_poly([enclose(c, values)]),
+        found: arb_poly = e.fold(
+            _opened(parts[side], parts),
+            number=lambda x: arb_poly([ball(x)]),
+            name=lambda name: arb_poly([0, 1] if name == LAPLACE else [self.values[name]]),
+            power=lambda base, n: base ** (integer_exponent(n) or -1),
+            call=lambda call, _: arb_poly([enclose(call, values)]),
+            quotient=_divided,
         )
-        return [in_balls(part, name=name, call=call) for part in self.opened(parts)]
+        return found
 
     def shown(self, parts: Parts) -> PrintedForm:
         """Return the form with other parts, in lowest terms, without lines that are a name or a number."""
-        lines, whole = self.lines(parts), e.quotient(*parts[:2])
-        for name in (*lines,):
-            if isinstance(lines[name], e.Name | e.Number):
-                put = {name: lines.pop(name)}
-                whole, lines = plain(whole, put), {n: plain(line, put) for n, line in lines.items()}
-        whole = self._tidied(whole, parts)
+        for name, line in parts.items():
+            if isinstance(line, e.Name | e.Number) and name not in (NUM, DEN):
+                parts = {n: plain(x, {name: parts[name]}) for n, x in parts.items()}
+        whole = self._tidied(e.quotient(parts[NUM], parts[DEN]), parts)
         num, den = whole.children if isinstance(whole, e.Quotient) else (whole, e.number(1))
-        where = reachable((num, den), lines.items())
-        return replace(self.form, num=num, den=den, where=where, source=None)
+        return replace(self.form, num=num, den=den, where=reachable((num, den), parts.items()), source=None)
 
     def _tidied(self, expression: e.Expression, parts: Parts) -> e.Expression:
         """Return an expression whose products are in lowest terms, sums after letters."""
@@ -133,17 +120,22 @@ class NestedForm:
             return e.sum_of(of_powers(x, {b: p[b] for b in sorted(p, key=place)}) for x, p in products)
 
         result = tidied(rebuilt(expression, tidied))
-        for call in e.nodes(expression):
-            if isinstance(call, e.Call):  # a generator of the ring keeps its name
-                is_own = e.format_expression(self.opened(parts, [call])[0]) in self.ring.index
-                result = e.replace_node(result, rebuilt(call, tidied), call) if is_own else result
+        for call in e.nodes(expression):  # a generator of the ring keeps its name
+            if isinstance(call, e.Call) and e.format_expression(_opened(call, parts)) in self.ring.index:
+                result = e.replace_node(result, rebuilt(call, tidied), call)
         return result
+
+
+def _opened(expression: e.Expression, parts: Parts) -> e.Expression:
+    for _ in parts:
+        expression = e.substitute(expression, parts)
+    return expression
 
 
 def _less(parts: Parts, total: e.Expression, term: e.Expression) -> Parts:
     """Return parts without a term of a sum."""
     rest = e.sum_of([x for x in total.children if x != term])
-    return tuple(plain(e.replace_node(x, total, rest), {}) for x in parts)
+    return {name: plain(e.replace_node(x, total, rest), {}) for name, x in parts.items()}
 
 
 def _divided(one: arb_poly, other: arb_poly) -> arb_poly:

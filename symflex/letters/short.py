@@ -54,7 +54,7 @@ Image = tuple[fmpz_mpoly, Factored, int]  # a factor, the shorter one in its pla
 Way = tuple[TransferFunction, PrintedForm | None, Sequence[Image], tuple[float, float]]
 """A short function, its print, and the changes of a coefficient at the values and over the box."""
 
-MOST_NESTED = 200_000  # terms, times terms of printed sums, that are compared over a box: in ten seconds
+MOST_NESTED = 4_000  # terms up to which every term of a print is compared over a box: in ten seconds
 MOST_TERMS = 20_000
 """Terms of a numerator or denominator up to which its coefficients are compared, in about ten seconds."""
 FACTORED_TERMS = 120  # terms of a shortened polynomial up to which it is tried whether it has factors now
@@ -242,25 +242,25 @@ def _by_print(
     """Yield prints without terms of sums, also those in lines below, one more term kept each time."""
     values = {n: letters.values[i] for n, i in tf.ratio.ring.index.items() if i in letters.values}
     nested = NestedForm(form, tf.ratio.ring, values)
-    is_large = has_box and len(nested.terms) * terms_of(tf.ratio) > MOST_NESTED
+    is_large = has_box and terms_of(tf.ratio) > MOST_NESTED
     if not tf.is_rational or tf.model.root is not None or is_large:
         return
 
     def images(parts: Parts) -> list[Image]:
-        sides = zip(nested.sides(nested.parts), nested.sides(parts), (1, -1), strict=True)
-        over = ((x.numerator() * y.denominator(), y.numerator() * x.denominator(), n) for x, y, n in sides)
-        return [(old.expand(), new, n) for old, new, n in over]
+        (_, *before), (_, *after) = nested.sides(nested.parts), nested.sides(parts)
+        both = zip(before, after, (1, -1), strict=True)
+        pairs = ((x.numerator() * y.denominator(), y.numerator() * x.denominator(), n) for x, y, n in both)
+        return [(old.expand(), new, n) for old, new, n in pairs]
 
     def over_box(parts: Parts) -> float:
-        if not has_box or nested.constants(parts):  # of functions nothing is proved over a box
+        if not has_box or nested.sides(parts)[0]:  # of functions nothing is proved over a box
             return inf if has_box else 0.0
         return max(letters.change(x, y.expand())[1] for x, y, _ in images(parts))
 
     with precision(BITS):
         found = nested.without(most, over_box)
     for parts, change in found[::-1]:
-        constants = nested.constants(parts)
-        num, den = nested.sides(parts, constants)
+        constants, num, den = nested.sides(parts)
         ratio, _ = cancel(num.numerator() * den.denominator(), num.denominator() * den.numerator())
         short = replace(tf, reduced=ratio, closed=None, hidden=(), parts=None, solve=None)
         short = replace(short, constants=(*tf.constants, *constants))
