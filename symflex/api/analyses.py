@@ -44,8 +44,7 @@ if TYPE_CHECKING:
     from symflex.loops.peak import Peak
     from symflex.options import Ends
 
-POINTS = 201
-"""Number of points of a response in time if no times are given."""
+POINTS = 201  # number of points of a response in time if no times are given
 
 
 class Analyses(Plotted):

@@ -10,8 +10,7 @@ from typing import Any, Final
 from symflex.errors.optional import installed
 from symflex.files.write import write_atomically
 
-HEIGHT: Final = "56rem"
-"""Height of a page in a notebook: sliders, stability and four plots."""
+HEIGHT: Final = "56rem"  # height of a page in a notebook: sliders, stability and four plots
 WIDGET: Final = """
 export default { render({ model, el }) {
     const frame = document.createElement("iframe");

@@ -23,8 +23,7 @@ if TYPE_CHECKING:
     from symflex.analysis import modes as modes_layer
     from symflex.figures import AxesGiven
 
-END_TOLERANCE = 1e-12
-"""Relative distance by which rounding may put a place beyond the end of a beam."""
+END_TOLERANCE = 1e-12  # relative distance by which rounding may put a place beyond the end of a beam
 
 
 @dataclass(frozen=True)

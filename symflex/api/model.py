@@ -57,8 +57,7 @@ if TYPE_CHECKING:
     from symflex.options import Ends
 
 Table = Mapping[str, object]
-LARGEST_DRAWING = 60
-"""Elements of a model that a notebook draws."""
+LARGEST_DRAWING = 60  # elements of a model that a notebook draws
 
 
 @dataclass(frozen=True, init=False)

@@ -23,8 +23,7 @@ if TYPE_CHECKING:
     import sympy
 
 
-MOST_STATES: Final = 8
-"""Whose matrices fit on a page."""
+MOST_STATES: Final = 8  # whose matrices fit on a page
 
 
 @dataclass(frozen=True)

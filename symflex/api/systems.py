@@ -21,8 +21,7 @@ if TYPE_CHECKING:
 Quotient = tuple[object, object]
 TUPLES = {2: ("num", "den"), 3: ("zeros", "poles", "gain"), 4: "ABCD"}
 """What the members of a tuple are by their number, as scipy reads it."""
-SHOWN = 40
-"""Characters of a value that a message repeats."""
+SHOWN = 40  # characters of a value that a message repeats
 
 
 def from_control(sys: object) -> Model:

@@ -40,8 +40,7 @@ CALLED = {
     "save": "to_toml",
 }
 """Methods by what commands, MATLAB and python-control call them."""
-OF_LOOPS = ("stability", "locus", "colocation", "sweep")
-"""Methods of a model alone."""
+OF_LOOPS = ("stability", "locus", "colocation", "sweep")  # methods of a model alone
 
 
 def refuse_attribute(item: object, name: str, bound: type | None = None, way: str = "G.bind()") -> NoReturn:

@@ -12,8 +12,7 @@ from pathlib import Path
 
 import click
 
-BUDGET_EXCEEDED = 5
-"""An exit code."""
+BUDGET_EXCEEDED = 5  # an exit code
 YOUNG_OBJECTS = 100_000
 """Made between two looks for cycles among them, some 20 MB. Python's 700 are few: a start keeps all."""
 WATCHED = "watched"

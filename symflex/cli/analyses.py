@@ -24,8 +24,7 @@ if TYPE_CHECKING:
 
 
 _NAME = re.compile(r"(?!inf|nan)[A-Za-z_]\w*")
-DERIVING = 0.5
-"""Seconds that deriving may take in any case, by which a command may exceed its time."""
+DERIVING = 0.5  # seconds that deriving may take in any case, by which a command may exceed its time
 
 
 @command_of("roots", RootsOptions)

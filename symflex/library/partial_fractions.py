@@ -25,10 +25,8 @@ from symflex.algebra.ring import by_powers, degree_in, irreducible_factors
 Matrix = tuple[tuple[Factored, ...], ...]
 Row = list[Factored]
 
-EXPONENT = "[lambda]"
-"""The generator that stands for the exponent: no name of a model has brackets."""
-FACTORED_TERMS = 2_000
-"""Terms of a characteristic polynomial up to which it is factored: less than a second."""
+EXPONENT = "[lambda]"  # the generator that stands for the exponent: no name of a model has brackets
+FACTORED_TERMS = 2_000  # terms of a characteristic polynomial up to which it is factored: less than a second
 
 
 @dataclass(frozen=True, slots=True, eq=False)

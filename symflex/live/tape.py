@@ -49,8 +49,7 @@ from symflex.roots.locate import locate
 from symflex.roots.passivity import energy_proof
 from symflex.transfer import AnyTransferFunction, BoundTransferFunction, TransferFunction, bind
 
-MODES = 10
-"""Number of modes that a page follows; the edge of its window lies between that and the next ones."""
+MODES = 10  # number of modes that a page follows; the edge of its window lies between that and the next ones
 
 ULP = 2.0**-52  # bound of the relative error of a number that is rounded to a double
 

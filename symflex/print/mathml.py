@@ -111,8 +111,7 @@ def page_signs() -> str:
     return "".join(sorted({*ascii_signs, *italic, *italic_greek, *named, *"−⋅√′″‴\u2061\u2062"}))
 
 
-PIECE_EM: Final = 17.0
-"""Width up to which a piece is not broken [em]: that of a narrow telephone's screen."""
+PIECE_EM: Final = 17.0  # width up to which a piece is not broken [em]: that of a narrow telephone's screen
 _INDEXED: Final = re.compile(r"<msub>(?:<mpadded[^>]*>)?(<mi[^<]*</mi>)(?:</mpadded>)?(.*)</msub>")
 _MINUS: Final = operator("-", "prefix")
 

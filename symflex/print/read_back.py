@@ -52,10 +52,8 @@ if TYPE_CHECKING:
 
 PRECISIONS: Final = (64, 192, 576)  # bits at which points are tried that are not decided with fewer
 LONGEST_TEXT: Final = 5000  # characters of one form that are parsed, at some 10 microseconds each
-ENOUGH: Final = 24
-"""Bits of a value that leave a wrong form no place to hide, as points have no meaning."""
-INSIDE: Final = Fraction(3, 8)
-"""Part of a member at whose end coefficients that vary along it are compared."""
+ENOUGH: Final = 24  # bits of a value that leave a wrong form no place to hide, as points have no meaning
+INSIDE: Final = Fraction(3, 8)  # part of a member at whose end coefficients that vary along it are compared
 E = TypeVar("E", bound=Expression)
 
 

@@ -193,8 +193,7 @@ Values = tuple[tuple[str, "Expression"], ...]
 Counts = tuple[int, int]  # zeros and poles
 RigidCounts = tuple[int | None, int]
 """The same; no zeros are counted where the function itself vanishes, or grows without bound."""
-RESONANCES: Final = ("omega_p", "omega_z")
-"""What grows in a resonance block as compliances become rigid."""
+RESONANCES: Final = ("omega_p", "omega_z")  # what grows in a resonance block as compliances become rigid
 
 
 def rigid_counts(model: Model) -> Mapping[tuple[str, str], RigidCounts]:
