@@ -19,7 +19,7 @@ from math import inf, isfinite, isinf, nan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
-from symflex.errors import Diagnostic, SpecError, Text, UsageError
+from symflex.errors import Diagnostic, SpecError, Text, UsageError, refused
 
 if TYPE_CHECKING:
     from symflex.model import ModelParameter
@@ -722,11 +722,6 @@ class ReportOptions:
     )
 
 
-def refused(message: str) -> UsageError:
-    """Return SF902, the refusal of an argument."""
-    return UsageError(Diagnostic("SF902", message))
-
-
 def exact(number: float | Fraction) -> Fraction:
     """Return the shortest decimal that prints a number.
 
@@ -839,13 +834,7 @@ def plain_number(given: Stated, units: tuple[str, ...]) -> float:
 
 
 def tolerance(given: Stated, flag: str, units: tuple[str, ...], example: str) -> float:
-    """Return a largest difference; a number is checked where it is used.
-
-    Raises
-    ------
-    UsageError
-        SF902 for a text that is not a positive number.
-    """
+    """Return a largest difference; SF902 for a text that is not a positive number."""
     value = plain_number(given, units)
     if isinstance(given, str) and not 0 < value < inf:
         raise refused(f"{flag} takes a positive number such as '{example}', found '{given[:40]}'")
@@ -868,13 +857,7 @@ def share_of(given: Stated, flag: str) -> Fraction:
 
 
 def axis_ends(given: Ends | None, flag: str, *, is_frequency: bool = False) -> tuple[float, float] | None:
-    """Return the ends of an axis: numbers, or frequencies [rad/s].
-
-    Raises
-    ------
-    UsageError
-        SF902 for what is not a number, and where the first is not the lower one.
-    """
+    """Return the ends of an axis, the lower one first: numbers, or frequencies [rad/s]; SF902 for others."""
     if given is None:
         return None
     if is_frequency:

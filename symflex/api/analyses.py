@@ -24,7 +24,7 @@ from symflex.api.root import (
     plain_mode,
 )
 from symflex.budget import Budget, entered_budget
-from symflex.errors import Diagnostic, UsageError
+from symflex.errors import refused
 from symflex.letters.frequency_equation import roots_in_letters
 from symflex.options import RootsOptions, band_ends, checked_digits, duration
 from symflex.print.sympy import symbols_of
@@ -479,5 +479,5 @@ def budget_of(seconds: float | None) -> Budget:
     if seconds is None:
         return entered_budget()
     if not 0 < seconds < inf:
-        raise UsageError(Diagnostic("SF902", f"a budget must be a positive time in seconds, not {seconds}"))
+        raise refused(f"a budget must be a positive time in seconds, not {seconds}")
     return Budget(seconds)

@@ -22,7 +22,7 @@ from symflex.api.transfer_function import (
     Number,
     TransferFunction,
 )
-from symflex.errors import BudgetError, Diagnostic, Source, UsageError
+from symflex.errors import BudgetError, Diagnostic, Source, refused
 from symflex.expressions.format import number_text
 from symflex.files.write import write_atomically
 from symflex.model.spec import read
@@ -34,7 +34,6 @@ from symflex.options import (
     StabilityOptions,
     SweepOptions,
     checked_digits,
-    refused,
 )
 
 if TYPE_CHECKING:
@@ -859,13 +858,12 @@ class Model:
         """
         from symflex import sweep as sweep_package  # imports numpy and scipy
         from symflex.api.sweep import Sweep
-        from symflex.errors import Diagnostic, UsageError
 
         if of not in sweep_package.QUANTITIES:
             hint = "choose from: " + ", ".join(sweep_package.QUANTITIES)
-            raise UsageError(Diagnostic("SF902", f"nothing is called '{of[:64]}' in a sweep", None, hint))
+            raise refused(f"nothing is called '{of[:64]}' in a sweep", hint)
         if of == "response" and not len(frequencies):
-            raise UsageError(Diagnostic("SF902", "a response needs frequencies"))
+            raise refused("a response needs frequencies")
         given = SweepOptions(over, draws, seed, of, tf, modes, band, gain=gain, output=output, fresh=fresh)
         task, design = sweep_package.plan_sweep(self.resolved, given, frequencies)
         return face_of(Sweep, sweep_package.sweep(task, design, given, executor, workers=workers))
@@ -992,8 +990,7 @@ class Model:
         from symflex.state_space.sampled import sampling_of
 
         if target not in SAMPLED:
-            hint = f"targets: {', '.join(SAMPLED)}"
-            raise UsageError(Diagnostic("SF902", f"no sampled code for '{target[:64]}'", None, hint))
+            raise refused(f"no sampled code for '{target[:64]}'", f"targets: {', '.join(SAMPLED)}")
         sampling = sampling_of(dt, method, prewarp, "a sampling time")
         return self._exported(DifferenceExporter(SAMPLED[target], sampling, is_direct=direct), name)
 

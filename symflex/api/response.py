@@ -11,7 +11,7 @@ from symflex.analysis.time_response import EnclosedResponse
 from symflex.api.face import face_of
 from symflex.data import measurement
 from symflex.data.measurement import Estimate
-from symflex.errors import Diagnostic, UsageError
+from symflex.errors import refused
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -57,8 +57,7 @@ class FrequencyResponse(response_layer.SampledResponse):
 
         figure = draw_response(self, ax)
         if figure is None:
-            message = "a drawing of a response needs at least two positive frequencies"
-            raise UsageError(Diagnostic("SF902", message))
+            raise refused("a drawing of a response needs at least two positive frequencies")
         return figure
 
     def _repr_svg_(self) -> str | None:
@@ -118,7 +117,7 @@ class MeasuredResponse(measurement.MeasuredResponse):
         from symflex.figures import draw_measured  # imports matplotlib
 
         if not self.frequency_hz[1:].size:
-            raise UsageError(Diagnostic("SF902", "a drawing of a response needs at least two frequencies"))
+            raise refused("a drawing of a response needs at least two frequencies")
         return draw_measured(self, ax=ax)
 
 

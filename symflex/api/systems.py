@@ -11,7 +11,7 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 from symflex.api.model import Model, Table
-from symflex.errors import Diagnostic, UsageError, nearest
+from symflex.errors import nearest, refused
 from symflex.model.scope import RESERVED
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def from_control(sys: object) -> Model:
         given = SimpleNamespace(**dict(zip(TUPLES[len(sys)], sys, strict=True)))
     if getattr(given, "dt", None):
         note = "symflex models continuous time; its own functions are sampled by discretise()"
-        raise _refused(f"the system is in discrete time, dt = {given.dt}", note)
+        raise refused(f"the system is in discrete time, dt = {given.dt}", note)
     title = str(getattr(given, "name", None) or "")
     if all(hasattr(given, key) for key in "ABCD"):
         return _of_states(given, title)
@@ -70,7 +70,7 @@ def from_control(sys: object) -> Model:
     else:
         hint = "a tuple is (num, den), (zeros, poles, gain) or (A, B, C, D)"
         hint = "read_measurement() takes measured responses" if hasattr(given, "omega") else hint
-        raise _refused(
+        raise refused(
             f"a '{type(sys).__name__}' is neither a transfer function nor a state-space system", hint
         )
     names = _FreeNames()
@@ -137,15 +137,15 @@ def from_matrices(
     """
     matrices = {name: _rows(name, m) for name, m in (("M", M), ("D", D), ("K", K)) if m is not None}
     if not matrices:
-        raise _refused("there is no matrix", "give M, D or K")
+        raise refused("there is no matrix", "give M, D or K")
     size = len(next(iter(matrices.values())))
     for name, rows in matrices.items():
         if len(rows) != size or any(len(row) != size for row in rows) or not size:
             shape = f"{len(rows)} x {len(rows[0]) if rows else 0}"
-            raise _refused(f"{name} is {shape}", f"every matrix must be square, here {size} x {size}")
+            raise refused(f"{name} is {shape}", f"every matrix must be square, here {size} x {size}")
     names = tuple(unknowns) or tuple(f"q_{i + 1}" for i in range(size))
     if len(names) != size:
-        raise _refused(f"{len(names)} unknowns for matrices of {size} rows", "name each of them")
+        raise refused(f"{len(names)} unknowns for matrices of {size} rows", "name each of them")
     powers = {"M": "s^2*", "D": "s*", "K": ""}
     columns = {name: _along(f"input '{name}'", given, names) for name, given in inputs.items()}
     rows_read = {
@@ -197,7 +197,7 @@ def _quotients(given: Any) -> list[list[Quotient]]:  # noqa: ANN401 (a system of
     """Return numerators and denominators, by output and input."""
     if not hasattr(given, "ninputs"):
         if len(_rows("num", given.num)) > 1:
-            raise _refused("the numerator has several outputs", "pass its outputs one at a time")
+            raise refused("the numerator has several outputs", "pass its outputs one at a time")
         return [[(_rows("num", given.num)[0], _rows("den", given.den)[0])]]
     places = range(given.ninputs)
     return [
@@ -215,7 +215,7 @@ def _with_roots(gain: float, roots: Sequence[complex]) -> str:
         real = f"s - {_coefficient(root.real)}"
         if root.imag:
             if root.conjugate() not in left:
-                raise _refused(f"the root {root:g} has no conjugate", "a system's coefficients are real")
+                raise refused(f"the root {root:g} has no conjugate", "a system's coefficients are real")
             left.remove(root.conjugate())
             real = f"({real})^2 + {_coefficient(root.imag)}^2"
         factors.append(f"({real})")
@@ -230,7 +230,7 @@ def _rows(name: str, given: Any) -> list[list[Any]]:  # noqa: ANN401 (numbers or
         listed = [[listed]]
     rows = [list(row) if isinstance(row, list | tuple) else row for row in listed]
     if any(isinstance(row, list) for row in rows) and not all(isinstance(row, list) for row in rows):
-        raise _refused(f"{name} is not a matrix: its rows differ in length", None)
+        raise refused(f"{name} is not a matrix: its rows differ in length", None)
     return rows if rows and isinstance(rows[0], list) else [rows]
 
 
@@ -238,7 +238,7 @@ def _along(what: str, given: object, names: Sequence[str]) -> list[object]:
     """Return one entry for each unknown, of which a number or a name picks one."""
     if isinstance(given, str):
         if given not in names:
-            raise _refused(
+            raise refused(
                 f"{what} refers to the unknown '{given[:SHOWN]}', which does not exist",
                 nearest(given, names) or "unknowns: " + ", ".join(names[:8]),
             )
@@ -246,14 +246,12 @@ def _along(what: str, given: object, names: Sequence[str]) -> list[object]:
     if isinstance(given, Integral):
         place = int(given)
         if not -len(names) <= place < len(names):
-            raise _refused(f"{what} is at {place}", f"unknowns are counted from 0 to {len(names) - 1}")
+            raise refused(f"{what} is at {place}", f"unknowns are counted from 0 to {len(names) - 1}")
         return [int(i == place % len(names)) for i in range(len(names))]
     rows = _rows(what, given)
     entries = [e for row in rows for e in row]
     if len(entries) != len(names) or len(rows) not in (1, len(names)):
-        raise _refused(
-            f"{what} has {len(entries)} entries", f"give one for each of the {len(names)} unknowns"
-        )
+        raise refused(f"{what} has {len(entries)} entries", f"give one for each of the {len(names)} unknowns")
     return entries
 
 
@@ -274,7 +272,7 @@ def _coefficient(entry: Any) -> str:  # noqa: ANN401 (a number or an expression 
         return f"({entry})"
     if not isinstance(entry, Real | Decimal) or not isfinite(entry):
         hint = "entries must be numbers or SymPy expressions"
-        raise _refused(f"'{str(entry)[:SHOWN]}' is not a real number", hint)
+        raise refused(f"'{str(entry)[:SHOWN]}' is not a real number", hint)
     # A double is the shortest decimal that prints it; those of numpy are doubles, too.
     text = repr(float(entry)) if hasattr(entry, "hex") else str(entry)
     return f"({text})" if text.startswith("-") or "/" in text else text
@@ -311,7 +309,3 @@ class _FreeNames:
             unique, number = f"{name}_{number}", number + 1
         self._taken.add(unique)
         return unique
-
-
-def _refused(message: str, hint: str | None) -> UsageError:
-    return UsageError(Diagnostic("SF902", message, None, hint))

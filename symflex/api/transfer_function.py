@@ -16,7 +16,7 @@ from symflex.api.face import face_of
 from symflex.api.response import TimeResponse
 from symflex.api.state_space import StateSpace
 from symflex.api.toolboxes import Toolboxes, refuse_attribute
-from symflex.errors import Diagnostic, UsageError, counted
+from symflex.errors import counted, refused
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import Expression, Name
 from symflex.letters.groups import dimensionless_of
@@ -350,11 +350,11 @@ class TransferFunction(_Derived):
         symbols = symbols_of(self.exact.model)
         if parameter not in symbols or of not in ("pole", "zero"):
             what = f"parameter '{parameter[:64]}'" if parameter not in symbols else f"root called '{of[:64]}'"
-            raise UsageError(Diagnostic("SF902", f"there is no {what}", None, nearest(parameter, symbols)))
+            raise refused(f"there is no {what}", nearest(parameter, symbols))
         form = self._shortest if self.exact.is_rational else self.form("hyperbolic")
         if form.printed.laws:
             message = f"the waves of {self.name} have no formula, so its sensitivities have none either"
-            raise UsageError(Diagnostic("SF902", message, None, "use sensitivities() of the bound function"))
+            raise refused(message, "use sensitivities() of the bound function")
         part = form.den if of == "pole" else form.num
         return sensitivity_formula(part, form.where, to_sympy(Name("s"), symbols), symbols[parameter])
 

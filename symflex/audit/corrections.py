@@ -57,8 +57,7 @@ FACTORS = (Fraction(2), Fraction(1, 2), Fraction(-1), Fraction(4), Fraction(1, 4
 REAL_POINT, FEW_DIGITS = (Fraction(1), Fraction(0)), 15
 """First point at which a formula with another line is tried, and its digits: roots are unambiguous there."""
 LINE_EXPONENTS = tuple(Fraction(n, 4) for n in (2, 1, 4, 8, -2, 12, 16, -1, -4))
-MOST_PAIRS, FEW_SLIPS = 1500, 20
-"""Pairs of slips in a line that are tried, and slips in each of two lines."""
+MOST_PAIRS, FEW_SLIPS = 1500, 20  # pairs of slips in a line that are tried, and slips in each of two lines
 FUNCTION_SWAPS = ("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp")
 
 

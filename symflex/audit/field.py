@@ -23,7 +23,6 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from math import gcd
-from typing import NoReturn
 
 from flint import fmpz_mpoly
 
@@ -87,10 +86,7 @@ class Ground:
         object.__setattr__(self, "plain", Ring(self.names))
 
     def grown(self, **more: object) -> Ground:
-        """Return the ground with other entries.
-
-        Raises UnreadError when it would become unreasonably large.
-        """
+        """Return the ground with other entries; UnreadError when it would become unreasonably large."""
         ground = replace(self, **more)  # type: ignore[arg-type]
         size = len(ground.primes) + len(ground.sums) + 3 * len(ground.waves)
         if ground.order > FINEST_ROOT:
@@ -146,11 +142,7 @@ class Arithmetic:
         return 1 if name in g.names and name not in g.rootable else g.order
 
     def power(self, value: Factored, exponent: Fraction) -> Factored:
-        """Return the principal value of a rational power, for positive s and parameters.
-
-        Raises UnreadError when the power is not in any field of this kind; GrowError when it is in a larger
-        one; ZeroDivisionError for zero raised to a negative power.
-        """
+        """Return the principal value of a rational power, for positive s and parameters."""
         if value.is_zero:
             if exponent < 0:
                 raise ZeroDivisionError
@@ -229,7 +221,15 @@ class Arithmetic:
             return Factored.polynomial(self.ring, factor) ** int(total)
         if len(factor) == 1:
             name = self.ring.names[next(i for i, e in enumerate(factor.monoms()[0]) if e)]
-            self._grow_for_root(name, total.denominator)
+            g = self.ground
+            if name.startswith("exp("):
+                wave = int(name[4:-1])
+                finer = Wave(g.waves[wave].key, g.waves[wave].unit / total.denominator)
+                raise GrowError(g.grown(waves=(*g.waves[:wave], finer, *g.waves[wave + 1 :])))
+            if name.startswith(("cos(", "sin(", HOLE, UNIT)) or (name in g.names and name not in g.rootable):
+                what = "the imaginary unit" if name == UNIT else "a function" if "(" in name else f"'{name}'"
+                raise UnreadError(f"it takes a root of {what}")
+            raise GrowError(g.grown(order=g.order * total.denominator))
         parts = self._parts(factor)
         if parts is None:
             raise UnreadError("it takes a root that is not one of s and the parameters")
@@ -241,10 +241,7 @@ class Arithmetic:
         return result
 
     def _parts(self, factor: fmpz_mpoly) -> tuple[int, list[tuple[Recipe, int]]] | None:
-        """Return content and irreducible parts of a polynomial in s and the parameters.
-
-        One that also contains roots is one part; ``None`` for one that contains functions.
-        """
+        """Return content and irreducible parts of a polynomial, ``None`` when it contains functions."""
         plain = self._plain(factor)
         if plain is not None:
             content, parts = irreducible_factors(plain)
@@ -259,18 +256,6 @@ class Arithmetic:
                     key.append((name, Fraction(int(exponent), self._order_of(name))))
             terms.append((tuple(key), int(coefficient)))
         return 1, [(tuple(sorted(terms)), 1)]
-
-    def _grow_for_root(self, name: str, denominator: int) -> NoReturn:
-        """Raise what is needed for a root of one generator to be in the field."""
-        g = self.ground
-        if name.startswith("exp("):
-            wave = int(name[4:-1])
-            finer = Wave(g.waves[wave].key, g.waves[wave].unit / denominator)
-            raise GrowError(g.grown(waves=(*g.waves[:wave], finer, *g.waves[wave + 1 :])))
-        if name.startswith(("cos(", "sin(", HOLE, UNIT)) or (name in g.names and name not in g.rootable):
-            what = "the imaginary unit" if name == UNIT else "a function" if "(" in name else f"'{name}'"
-            raise UnreadError(f"it takes a root of {what}")
-        raise GrowError(g.grown(order=g.order * denominator))
 
     def _is_positive(self, factor: fmpz_mpoly) -> bool:
         """Tell whether a polynomial is positive as a sum of positive terms."""
@@ -319,11 +304,7 @@ class Arithmetic:
     # --------------------------------------------------------------------------------------- functions
 
     def function(self, name: str, argument: Factored) -> Factored:
-        """Return ``exp``, ``sin``, ``cos``, ``tan``, ``sinh``, ``cosh``, ``tanh`` or ``sqrt`` of a value.
-
-        Raises UnreadError, GrowError as :meth:`power`; ZeroDivisionError for the tangent of a right angle;
-        there is none in the field but by mistake.
-        """
+        """Return ``exp``, ``sin``, ``cos``, ``tan``, ``sinh``, ``cosh``, ``tanh`` or ``sqrt`` of a value."""
         if name == "sqrt":
             return self.power(argument, Fraction(1, 2))
         if name == "log":
@@ -454,10 +435,7 @@ class Arithmetic:
         return polynomial
 
     def reduced(self, value: Factored) -> Factored:
-        """Return a value with every factor in normal form.
-
-        Raises ZeroDivisionError when a denominator is zero.
-        """
+        """Return a value with every factor in normal form; ZeroDivisionError when a denominator is zero."""
         result = self.number(value.unit)
         for factor, exponent in value.factors:
             image = Factored.polynomial(self.ring, self.reduce(factor))

@@ -20,7 +20,7 @@ from symflex.audit.numeric import (
 )
 from symflex.audit.reading import Formula, FormulaReading, formula_of, read
 from symflex.budget import spend
-from symflex.errors import BudgetError, Diagnostic, SpecError, UsageError, nearest
+from symflex.errors import BudgetError, Diagnostic, SpecError, nearest, refused
 from symflex.expressions import Expression, Sum, format_expression, nodes
 from symflex.model import Definition, Model, Published
 from symflex.model.loss_factors import check_causal
@@ -162,18 +162,14 @@ def _disagreeing_sums(published: Published, model: Model) -> Iterator[str]:
 
 
 def audit(model: Model, names: Sequence[str] = ()) -> tuple[Audit, ...]:
-    """Return what is found about the model's printed formulas, those named "OUT/IN" or all.
-
-    Raises UsageError: SF902 for a name without a printed formula; SpecError with every problem of all
-    formulas, each at its place.
-    """
+    """Return what is found about the model's printed formulas, those named "OUT/IN" or all."""
     if model.root is not None:
         check_causal(model, "a comparison with printed formulas")
     printed = {"/".join(p.tf): p for p in model.published}
     for name in names:
         if name not in printed:
             hint = nearest(name, printed) or "published: " + ", ".join(list(printed)[:8])
-            raise UsageError(Diagnostic("SF902", f"nothing is published for '{name[:100]}'", None, hint))
+            raise refused(f"nothing is published for '{name[:100]}'", hint)
     chosen = tuple(printed[name] for name in names) if names else model.published
     check_published(model, chosen)
     derived = derive_all(model, tuple(p.tf for p in chosen)) if chosen else ()

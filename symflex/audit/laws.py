@@ -43,11 +43,7 @@ class LawCheck:
 
 
 def check_laws(reading: FormulaReading | None, numbers: Numbers | None) -> tuple[LawCheck, ...]:
-    """Return every law that could be checked.
-
-    ``reading`` holds both functions exactly, None when they could not be read; ``numbers`` both with the
-    model's values, None if a parameter has none.
-    """
+    """Return every law that could be checked, exactly with the reading or with numbers."""
     checks: list[LawCheck | None] = []
     if reading is not None:
         printed, derived = (lowest_terms(reading.field, v) for v in (reading.printed, reading.derived))

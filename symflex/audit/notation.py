@@ -62,10 +62,7 @@ def symbols_of(reading: FormulaReading) -> tuple[Symbol, ...]:
 
 
 def in_symbols(field: Arithmetic, value: Factored, symbols: Sequence[Symbol]) -> Expression | None:
-    """Return a value as a sum of products of symbols with rational coefficients, ``None`` when it is not one.
-
-    The lowest degree that will do is used.
-    """
+    """Return a value as a sum of least degree of products of symbols, ``None`` when it is not one."""
     if not symbols or len(symbols) > MOST_SYMBOLS:
         return None
     monomials: list[tuple[tuple[int, ...], Factored]] = []
@@ -179,20 +176,6 @@ def _negated(expression: Expression) -> Expression:
     return sum_of(negative(term) for term in terms)
 
 
-def _shifts(field: Arithmetic, value: Factored) -> list[Factored]:
-    """Return powers of the exponentials by which a value may be divided."""
-    highest = [0] * len(field.ground.waves)
-    for factor, exponent in value.factors:
-        for i in range(len(highest)):
-            places = [field.ring.index[f"{f}({i})"] for f in ("exp", "cos", "sin")]
-            highest[i] += exponent * sum(int(factor.degrees()[place]) for place in places)
-    shifts = [field.number(1)]
-    for i, degree in enumerate(highest):
-        e = Factored.generator(field.ring, f"exp({i})")
-        shifts = [s * e**-n for s in shifts for n in range(abs(degree) + 1)]
-    return shifts[:MOST_SHIFTS]
-
-
 def polynomial_expression(field: Arithmetic, value: Factored) -> Expression | None:
     """Return a polynomial with its functions written out, ``None`` when it has a denominator."""
     if any(e < 0 for _, e in value.factors):
@@ -251,7 +234,17 @@ def _in_symbols(
     field: Arithmetic, value: Factored, symbols: Sequence[Symbol]
 ) -> tuple[Expression, Factored] | None:
     """Return a value, up to powers of exponentials, in symbols."""
-    for shift in _shifts(field, value):
+    # A value may be divided by powers of the exponentials.
+    highest = [0] * len(field.ground.waves)
+    for factor, exponent in value.factors:
+        for i in range(len(highest)):
+            places = [field.ring.index[f"{f}({i})"] for f in ("exp", "cos", "sin")]
+            highest[i] += exponent * sum(int(factor.degrees()[place]) for place in places)
+    shifts = [field.number(1)]
+    for i, degree in enumerate(highest):
+        e = Factored.generator(field.ring, f"exp({i})")
+        shifts = [s * e**-n for s in shifts for n in range(abs(degree) + 1)]
+    for shift in shifts[:MOST_SHIFTS]:
         written = in_symbols(field, value * shift, symbols)
         if written is not None:
             return written, value * shift

@@ -37,11 +37,7 @@ class Formula:
 
 
 def formula_of(published: Published, model: Model) -> Formula:
-    """Return a printed formula with its lines in order.
-
-    Raises SpecError with every problem, each at its place: those of names, as :func:`check_printed`, and
-    SF225 an exponent that is more than a quotient of numbers.
-    """
+    """Return a printed formula with its lines in order; SpecError has every problem, each at its place."""
     problems = check_printed(published, readable_names(model))
     roots = [published.expression, *([published.scale] if published.scale is not None else [])]
     pending = [] if problems else [e for _, e in reversed(published.where)] + roots[::-1]
@@ -78,11 +74,7 @@ class FormulaReading:
 
 
 def read(formula: Formula, tf: TransferFunction) -> FormulaReading:
-    """Return both functions over the smallest field that contains them.
-
-    Raises UnreadError when one of them is in no field of this kind; SpecError: SF224 when the formula
-    divides by zero; BudgetError: SF501 when an expansion would become too large.
-    """
+    """Return both functions over the smallest field that contains them; UnreadError if there is none."""
     ground = ground_of([(p.name, p.assume != "real") for p in tf.model.parameters])
     for _ in range(MOST_GROWTHS):
         field = Arithmetic(ground)
@@ -160,10 +152,7 @@ def _division(part: Expression, whole: Expression) -> SpecError:
 
 
 def derived_value(field: Arithmetic, tf: TransferFunction) -> Factored:
-    """Return a derived transfer function over the field.
-
-    Raises UnreadError, GrowError as :class:`~symflex.audit.field.Field`.
-    """
+    """Return a derived transfer function over the field."""
     ring, table = tf.ratio.ring, tf.kernels
     images = {name: field.name(name) for name in field.ground.names}
     for constant in tf.constants:

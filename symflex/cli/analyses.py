@@ -12,7 +12,7 @@ import click
 from symflex.budget import entered_budget
 from symflex.cli.command import Command, Specification, command_of, first_pair
 from symflex.cli.reporting import answer, emit_json, note, say, show_error, terminal_width
-from symflex.errors import BudgetError, Diagnostic, UsageError
+from symflex.errors import BudgetError, refused
 from symflex.options import ColocationOptions, RationalOptions, RootsOptions, StabilityOptions, SweepOptions
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     from symflex.roots.region import region_of
 
     if given.format != "text" and not given.letters:
-        raise UsageError(Diagnostic("SF902", "--format is for --letters"))
+        raise refused("--format is for --letters")
     chosen = region_of(given, "--")
     # However short the time is, what is sought is told, and how many roots there are.
     with entered_budget().at_least(DERIVING).entered():
@@ -160,7 +160,7 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
     model = spec.load()
     if given.gain and (given.over or given.letters):
         other = "--letters" if given.letters else "--over"
-        raise UsageError(Diagnostic("SF902", f"give only one of --gain and {other}"))
+        raise refused(f"give only one of --gain and {other}")
     if given.letters:
         from symflex.letters.boundary import boundary
         from symflex.letters.routh import conditions
@@ -171,7 +171,7 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
         answer(given.as_json, shown.to_json_dict, shown.latex if given.format == "latex" else shown.__str__)
         return 0
     if given.of != "poles" or given.tf or given.format != "text":
-        raise UsageError(Diagnostic("SF902", "--of, --tf and --format are for --letters"))
+        raise refused("--of, --tf and --format are for --letters")
     stable: StabilityMap | StabilityChart | SpreadStability
     with ProgressBar() as bar, entered_budget().reporting_to(bar).entered():
         if given.spread is not None:
@@ -220,16 +220,16 @@ def sweep(spec: Specification, given: SweepOptions) -> int:
     from symflex.sweep.sweep import sweep_json
 
     if given.workers and given.scheduler:
-        raise UsageError(Diagnostic("SF902", "give only one of --workers and --scheduler"))
+        raise refused("give only one of --workers and --scheduler")
     if given.fresh and not given.output:
-        raise UsageError(Diagnostic("SF902", "--fresh needs a file: give -o FILE"))
+        raise refused("--fresh needs a file: give -o FILE")
     if given.output:
         check_writable(Path(given.output))
     model = spec.load()
     _check(given)
     task, design = run.plan_sweep(model, given)
     if doubled := [name for name in design.names if name in spec.settings]:
-        raise UsageError(Diagnostic("SF902", f"'{doubled[0]}' is both swept and set"))
+        raise refused(f"'{doubled[0]}' is both swept and set")
     if given.of != "margins":
         first_pair(model, given.tf, "sweeping")
     with ProgressBar() as bar, run.open_executor(given.workers, given.scheduler) as (executor, size):
@@ -245,12 +245,12 @@ def sweep(spec: Specification, given: SweepOptions) -> int:
 def _check(given: SweepOptions) -> None:
     """Refuse options that say nothing for what is computed, or contradict each other."""
     if given.of != "response" and given.count is not None:
-        raise UsageError(Diagnostic("SF902", "--count is for --of response"))
+        raise refused("--count is for --of response")
     if given.of not in ("poles", "zeros") and given.modes is not None:
-        raise UsageError(Diagnostic("SF902", "--modes is for --of poles and --of zeros"))
+        raise refused("--modes is for --of poles and --of zeros")
     if given.modes is not None and given.band is not None:
-        raise UsageError(Diagnostic("SF902", "give only one of --modes and --band"))
+        raise refused("give only one of --modes and --band")
     if given.of == "margins" and not given.gain:
-        raise UsageError(Diagnostic("SF902", "margins need a loop", None, "name its gain: --gain K"))
+        raise refused("margins need a loop", "name its gain: --gain K")
     if given.of != "margins" and given.gain:
-        raise UsageError(Diagnostic("SF902", "--gain is for --of margins"))
+        raise refused("--gain is for --of margins")

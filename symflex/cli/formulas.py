@@ -13,7 +13,7 @@ import click
 
 from symflex.cli.command import Command, Specification, command_of
 from symflex.cli.reporting import diagnostic_json, emit_json, listed, note, say, show, terminal_width
-from symflex.errors import Diagnostic, SymflexError, UsageError
+from symflex.errors import SymflexError, refused
 from symflex.errors.diagnostic import nearest, printable
 from symflex.expressions import Equation
 from symflex.options import AuditOptions, CheckOptions, DeriveOptions, ExportOptions, highest_frequency
@@ -112,19 +112,13 @@ LONG = 5_000  # terms beyond which a print is announced: it takes seconds, or mi
 
 
 def chosen_representation(representation: str, form: str | None) -> str:
-    """Return the representation to derive in: a form belongs to one of them.
-
-    Raises
-    ------
-    UsageError
-        SF902 when the two options contradict each other.
-    """
+    """Return the representation that a form belongs to; SF902 when the two options contradict each other."""
     if form is None:
         return representation
     wanted = "nested" if form == "nested" else "expanded"
     if representation not in ("auto", wanted):
         message = f"--form {form[:64]} belongs to the {wanted} representation, not the {representation} one"
-        raise UsageError(Diagnostic("SF902", message))
+        raise refused(message)
     return wanted
 
 
@@ -145,7 +139,7 @@ def derive(spec: Specification, given: DeriveOptions) -> int:
     if given.limits or given.dimensionless:
         return _read_off(spec, given)
     if given.width is not None and (given.as_json or given.format != "latex"):
-        raise UsageError(Diagnostic("SF902", "--width is for --format latex"))
+        raise refused("--width is for --format latex")
     column = None
     if given.width is not None:
         from symflex.print.latex import column_width
@@ -204,8 +198,7 @@ def _read_off(spec: Specification, given: DeriveOptions) -> int:
     from symflex.letters.limits import limits_of
 
     if given.form or given.width or given.representation != "auto" or (given.limits and given.dimensionless):
-        message = "--limits and --dimensionless exclude each other, --form, --width and --representation"
-        raise UsageError(Diagnostic("SF902", message))
+        raise refused("--limits and --dimensionless exclude each other, --form, --width and --representation")
     model = spec.load()
     derived, _ = pipeline.derive_as(model, pipeline.pick_pairs(model, given.tfs))
     found = [(limits_of if given.limits else dimensionless_of)(tf) for tf in derived]
@@ -267,7 +260,7 @@ def export(spec: Specification, given: ExportOptions) -> int:
         hint = nearest(meant, SUMMARIES) or "targets: " + ", ".join(SUMMARIES)
         wrong = f"there is no export target '{given.target[:64]}'"
         missing = "what to export to is missing: --to TARGET"
-        raise UsageError(Diagnostic("SF902", wrong if given.target else missing, None, hint))
+        raise refused(wrong if given.target else missing, hint)
     exporter = _chosen(given)
     is_folder = isinstance(exporter, LatexExporter) and bool(given.output) and _is_folder(given.output or "")
     if given.output:
@@ -294,13 +287,12 @@ def export(spec: Specification, given: ExportOptions) -> int:
         files |= {path.with_suffix(s): text for s, text in made.companions.items()}
         if len(files) <= len(made.companions):
             message = f"'{given.output}' would overwrite a file that the export writes next to it"
-            hint = f"end its name with {exporter.suffix}"
-            raise UsageError(Diagnostic("SF902", message, None, hint))
+            raise refused(message, f"end its name with {exporter.suffix}")
         for file, text in files.items():
             write_atomically(file, text.encode() if isinstance(text, str) else text)
             note(f"wrote {file}")
     elif made.archive:
-        raise UsageError(Diagnostic("SF902", "this export is an archive", None, f"-o NAME{exporter.suffix}"))
+        raise refused("this export is an archive", f"-o NAME{exporter.suffix}")
     else:
         say(made.text, nl=False)
     return 4 if given.strict and made.warnings else 0
@@ -319,19 +311,19 @@ def _chosen(given: ExportOptions) -> Exporter:
         column = column_width(given.width or "a4")
         exporter = replace(exporter, form=given.form, width_mm=column, has_figures=not given.no_figures)
     elif given.width is not None or given.no_figures:
-        raise UsageError(Diagnostic("SF902", "--width and --no-figures are for --to latex"))
+        raise refused("--width and --no-figures are for --to latex")
     elif isinstance(exporter, Language):
         if given.form not in (None, BAND):
             message = f"the only --form for code is {BAND}, not '{given.form[:64]}'"
-            raise UsageError(Diagnostic("SF902", message, None, "use other forms with --to latex"))
+            raise refused(message, "use other forms with --to latex")
         end = None if given.up_to is None else Fraction(highest_frequency(given.up_to))
         exporter = replace(exporter, form=given.form, up_to=end)
     elif given.form is not None:
-        raise UsageError(Diagnostic("SF902", "--form is for --to latex and for code"))
+        raise refused("--form is for --to latex and for code")
     if given.up_to is not None and not isinstance(exporter, Language):
-        raise UsageError(Diagnostic("SF902", "--up-to is for code"))
+        raise refused("--up-to is for code")
     if given.sample is None and (given.method or given.prewarp or given.is_direct):
-        raise UsageError(Diagnostic("SF902", "--method, --prewarp and --direct need --sample"))
+        raise refused("--method, --prewarp and --direct need --sample")
     sampling = None
     if given.sample is not None:
         from symflex.state_space.sampled import sampling_of
@@ -339,21 +331,20 @@ def _chosen(given: ExportOptions) -> Exporter:
         sampling = sampling_of(given.sample, given.method, given.prewarp)
     if isinstance(exporter, StateSpaceExporter):
         if given.is_direct:
-            raise UsageError(Diagnostic("SF902", f"--direct is for --to {', '.join(SAMPLED)}"))
+            raise refused(f"--direct is for --to {', '.join(SAMPLED)}")
         return replace(exporter, is_minimal=given.is_minimal, sampling=sampling)
     if given.is_minimal:
-        raise UsageError(Diagnostic("SF902", "--minimal is for --to state-space"))
+        raise refused("--minimal is for --to state-space")
     if sampling is not None:
         from symflex.codegen.sampled import DifferenceExporter
 
         if given.target not in SAMPLED:
-            raise UsageError(Diagnostic("SF902", f"--sample is for --to state-space, {', '.join(SAMPLED)}"))
+            raise refused(f"--sample is for --to state-space, {', '.join(SAMPLED)}")
         if given.form or given.up_to is not None:
-            raise UsageError(Diagnostic("SF902", "--form and --up-to are for code without --sample"))
+            raise refused("--form and --up-to are for code without --sample")
         return DifferenceExporter(SAMPLED[given.target], sampling, is_direct=given.is_direct)
     if exporter is None:
-        message = f"--to {given.target} needs a sampling time"
-        raise UsageError(Diagnostic("SF902", message, None, "for instance --sample 1ms"))
+        raise refused(f"--to {given.target} needs a sampling time", "for instance --sample 1ms")
     return exporter
 
 

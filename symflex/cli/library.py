@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import click
 
 from symflex.cli.reporting import emit_json, note, reporting, say, terminal_width
-from symflex.errors import Diagnostic, SpecError, Text, UsageError
+from symflex.errors import Diagnostic, SpecError, Text, UsageError, refused
 from symflex.errors.diagnostic import nearest
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def new(template: str | None, *, output: str | None, is_list: bool, netlist: str
 
         if not netlist.lower().endswith(NETLISTS):
             hint = f"the name of a netlist ends in {', '.join(NETLISTS)}"
-            raise UsageError(Diagnostic("SF902", f"'{netlist}' is not a netlist by its name", None, hint))
+            raise refused(f"'{netlist}' is not a netlist by its name", hint)
         _write_new(read(netlist).text, output)
         return 0
     if template is None or is_list:
@@ -67,7 +67,7 @@ def new(template: str | None, *, output: str | None, is_list: bool, netlist: str
         return 0
     if template not in TEMPLATES:
         hint = nearest(template, TEMPLATES) or "templates: " + ", ".join(TEMPLATES)
-        raise UsageError(Diagnostic("SF902", f"there is no template '{template[:64]}'", None, hint))
+        raise refused(f"there is no template '{template[:64]}'", hint)
     text = (files("symflex") / "templates" / f"{template}.toml").read_text(encoding="utf-8")
     _write_new(text if output is None else text.replace(f"{template}.toml", Path(output).name), output)
     return 0
@@ -109,7 +109,7 @@ def elements(name: str | None, *, as_json: bool) -> int:
 
     if name is not None and name not in (*ELEMENTS, *BLOCKS, MODEL_BLOCK):
         hint = hint_of_type(name, (*ELEMENTS, *BLOCKS, MODEL_BLOCK)) or "symflex elements lists them"
-        raise UsageError(Diagnostic("SF902", f"there is no element or block '{name[:64]}'", None, hint))
+        raise refused(f"there is no element or block '{name[:64]}'", hint)
     elements = [e for e in ELEMENTS.values() if name in (None, e.type_name)]
     blocks = [b for b in BLOCKS.values() if name in (None, b.type_name)]
     if as_json:
@@ -299,9 +299,7 @@ def _checked_unit(text: str) -> Unit:
         return parse_unit(Text.alone("<unit>", text))
     except SpecError as problem:
         (wrong, *_) = problem.diagnostics
-        raise UsageError(
-            Diagnostic("SF902", wrong.message, None, wrong.hint or "'symflex units' lists them")
-        ) from None
+        raise refused(wrong.message, wrong.hint or "'symflex units' lists them") from None
 
 
 def _unit_json(unit: Unit) -> dict[str, object]:

@@ -10,7 +10,7 @@ from symflex.budget import entered_budget
 from symflex.cli.command import Specification, bare_command, command_of, first_pair
 from symflex.cli.progress import ProgressBar
 from symflex.cli.reporting import answer, check_place, keep, note, terminal_width
-from symflex.errors import Diagnostic, FitError, SymflexError, UsageError
+from symflex.errors import Diagnostic, FitError, SymflexError, refused
 from symflex.options import FitOptions, MeasureOptions
 
 if TYPE_CHECKING:
@@ -49,9 +49,9 @@ def fit(given: FitOptions) -> int:
     from symflex.print.text import passages_text
 
     if given.base is not None and given.slope is not None:
-        raise UsageError(Diagnostic("SF902", "--slope is for fits without --base"))
+        raise refused("--slope is for fits without --base")
     if given.loop and not given.output:
-        raise UsageError(Diagnostic("SF902", "--loop is for the specification that -o writes"))
+        raise refused("--loop is for the specification that -o writes")
     keep(given.base, given.output)
     for name, endings in (
         (given.output, (".toml",)),
@@ -66,7 +66,7 @@ def fit(given: FitOptions) -> int:
     every = prepared(read, given.band, given.averages, given.window)
     if given.driving:
         if given.base is not None:
-            raise UsageError(Diagnostic("SF902", "--driving is for fits without --base"))
+            raise refused("--driving is for fits without --base")
         given = replace(given, tfs=(given.driving,))
     budget = entered_budget()
     with ProgressBar() as bar, budget.reporting_to(bar).entered():
@@ -128,7 +128,7 @@ def _read(given: FitOptions) -> list[MeasuredResponse]:
 
     read: list[MeasuredResponse] = []
     if given.first_hz and not given.step_hz:
-        raise UsageError(Diagnostic("SF902", "--from gives the first frequency and needs --step"))
+        raise refused("--from gives the first frequency and needs --step")
     axis = (given.first_hz, given.step_hz) if given.step_hz else None
     for path in given.data:
         responses = read_measurement(str(path), given.columns, _estimate(given), axis)
@@ -179,6 +179,6 @@ def _record(path: str, given: MeasureOptions) -> MeasuredResponse | None:
     chosen = [one for one in every if given.tf in (None, one.name)]
     if len(chosen) != 1:
         names = ", ".join(one.name for one in every)
-        raise UsageError(Diagnostic("SF902", f"choose a response with --tf: {names}"))
+        raise refused(f"choose a response with --tf: {names}")
     (response,) = prepared(chosen, given.band)
     return response

@@ -11,7 +11,7 @@ from symflex.cli.analyses import Ranged
 from symflex.cli.command import Specification, command_of
 from symflex.cli.reporting import PICTURES, check_place, note
 from symflex.cli.respond import show_response
-from symflex.errors import Diagnostic, UsageError
+from symflex.errors import UsageError, refused
 from symflex.errors.diagnostic import nearest
 from symflex.options import DrawOptions, PlotOptions, RespondOptions, duration, gain_ends
 
@@ -94,7 +94,8 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     ):
         return (_plot_over if is_over else _plot_record if given.record else _plot_sweep)(spec, given)
     if given.kind.endswith(".toml") and not Path(spec.path).exists():
-        raise _exchanged(spec, given)
+        hint = f"the file comes first: symflex plot {given.kind} {spec.path}"
+        raise refused(f"there is no file '{spec.path}'", hint)
     path = check_place(given.output, (".gif", *PICTURES)) if given.output else None
     model = spec.load()
     if given.modes is not None:
@@ -107,22 +108,18 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     font = checked_font(given.font, path)
     gain = given.gain or (figure.gain if figure else "")
     if (given.gain or given.limits) and drawn not in LOOP_FIGURES:
-        message = f"--gain and --range are for {', '.join(LOOP_FIGURES)}, not for '{drawn}'"
-        raise UsageError(Diagnostic("SF902", message))
+        raise refused(f"--gain and --range are for {', '.join(LOOP_FIGURES)}, not for '{drawn}'")
     band, frame = part_shown(drawn, given)
     shown = band or (figure.band if figure else None)
     if figure and figure.until and frame.x is None:
         frame = replace(frame, x=(0.0, float(figure.until)))
     if given.until is not None:
         if drawn not in IN_TIME or given.xlim:
-            message = f"--until is for {' and '.join(IN_TIME)}, in place of --xlim"
-            raise UsageError(Diagnostic("SF902", message))
+            raise refused(f"--until is for {' and '.join(IN_TIME)}, in place of --xlim")
         frame = replace(frame, x=(0.0, float(duration(given.until, "--until"))))
     if drawn not in FIGURES and not gain:
         hint = "name its gain: --gain K, or gain in [figures]"
-        raise UsageError(
-            Diagnostic("SF902", f"a figure of kind '{drawn}' needs the gain of a loop", None, hint)
-        )
+        raise refused(f"a figure of kind '{drawn}' needs the gain of a loop", hint)
     title = figure.title or None if figure else None
     if gain:
         limits = gain_ends(given.limits, pick_gain(model.parameters, gain))
@@ -165,8 +162,7 @@ def _plot_over(spec: Specification, given: PlotOptions, name: str = STABILITY) -
     is_other = given.spread is not None or any(getattr(given, n) for n in others)
     if given.kind != STABILITY or not given.over or is_other:
         hint = "as in: symflex plot FILE stability --over K --over T --box"
-        message = "--over is for stability, which takes no --tf, --band, --spread or ends of axes"
-        raise UsageError(Diagnostic("SF902", message, None, hint))
+        raise refused("--over is for stability, which takes no --tf, --band, --spread or ends of axes", hint)
     from symflex.figures import checked_font, draw_over, save
     from symflex.loops.over import stability_over
 
@@ -177,15 +173,10 @@ def _plot_over(spec: Specification, given: PlotOptions, name: str = STABILITY) -
     return 0
 
 
-def _exchanged(spec: Specification, given: PlotOptions) -> UsageError:
-    hint = f"the file comes first: symflex plot {given.kind} {spec.path}"
-    return UsageError(Diagnostic("SF902", f"there is no file '{spec.path}'", None, hint))
-
-
 def _plot_record(spec: Specification, given: PlotOptions) -> int:
     """Draw the measured output of a record over the model's."""
     if given.kind != "step" or len(given.tfs) > 1 or given.spread is not None:
-        raise UsageError(Diagnostic("SF902", "--record is for step, and one --tf"))
+        raise refused("--record is for step, and one --tf")
     path = check_place(given.output or f"{Path(spec.path).stem}_step.pdf", PICTURES)
     shared = {name: getattr(given, name) for name in ("record", "columns", "until", *FRAME)}
     tf = next(iter(given.tfs), None)
@@ -197,7 +188,7 @@ def _plot_sweep(spec: Specification, given: PlotOptions) -> int:
     others = (given.tfs, given.gain, given.limits, given.band, given.xlim, given.ylim, given.phase)
     if spec.settings or any(others) or given.spread is not None:
         message = "--set, --tf, --gain, --range, --band, --spread and ends of axes do not apply to a sweep"
-        raise UsageError(Diagnostic("SF902", message))
+        raise refused(message)
     from symflex.figures import checked_font, draw_sweep, save
     from symflex.print.latex import width_of
     from symflex.sweep.files import read_sweep
@@ -212,18 +203,12 @@ def _plot_sweep(spec: Specification, given: PlotOptions) -> int:
 
 
 def _named(model: Model, kind: str) -> tuple[Figure | None, str]:
-    """Return the figure of the specification that is named, if any, and the kind to draw.
-
-    Raises
-    ------
-    UsageError
-        SF902 when there is none of that name.
-    """
+    """Return the figure of the specification that is named, if any, and the kind to draw; SF902 without."""
     from symflex.figures import FIGURES, LOOP_FIGURES
 
     figure = next((f for f in model.figures if f.name == kind), None)
     if figure is None and kind not in (*FIGURES, *LOOP_FIGURES):
         names = [*FIGURES, "locus", "sensitivity", STABILITY, *(f.name for f in model.figures)]
         hint = nearest(kind, names) or "choose from: " + ", ".join(names)
-        raise UsageError(Diagnostic("SF902", f"there is no figure '{kind[:64]}'", None, hint))
+        raise refused(f"there is no figure '{kind[:64]}'", hint)
     return figure, figure.kind if figure else kind

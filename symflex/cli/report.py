@@ -11,7 +11,7 @@ from pathlib import Path
 
 from symflex.cli.command import bare_command
 from symflex.cli.reporting import note, say
-from symflex.errors import Diagnostic, UsageError
+from symflex.errors import refused
 from symflex.options import ReportOptions
 
 EPOCH_VARIABLE = "SOURCE_DATE_EPOCH"
@@ -61,13 +61,11 @@ def _date(given: str | None) -> str:
         with suppress(ValueError):
             if re.fullmatch(r"\d{4}-\d\d-\d\d", given):
                 return date.fromisoformat(given).isoformat()
-        message = f"--date takes a day such as 1988-12-31, or none, found '{given[:40]}'"
-        raise UsageError(Diagnostic("SF902", message))
+        raise refused(f"--date takes a day such as 1988-12-31, or none, found '{given[:40]}'")
     epoch = os.environ.get(EPOCH_VARIABLE, "")
     if epoch:
         try:
             return datetime.fromtimestamp(int(epoch), UTC).date().isoformat()
         except (ValueError, OverflowError, OSError):
-            message = f"{EPOCH_VARIABLE} is '{epoch[:40]}', not a number of seconds since 1970"
-            raise UsageError(Diagnostic("SF902", message)) from None
+            raise refused(f"{EPOCH_VARIABLE} is '{epoch[:40]}', not a number of seconds since 1970") from None
     return datetime.now(UTC).date().isoformat()

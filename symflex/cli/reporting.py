@@ -14,7 +14,7 @@ from typing import ParamSpec, TextIO
 import click
 
 from symflex.cli.progress import hushed
-from symflex.errors import Diagnostic, SymflexError, UsageError
+from symflex.errors import Diagnostic, SymflexError, UsageError, refused
 from symflex.errors.diagnostic import printable
 
 P = ParamSpec("P")
@@ -79,7 +79,7 @@ def check_place(name: str, endings: Iterable[str]) -> Path:
     *others, last = endings
     if path.suffix.lower() not in (*others, last):
         listed_endings = f"{', '.join(others)} or {last}" if others else last
-        raise UsageError(Diagnostic("SF902", f"'{path.name}' must end in {listed_endings}"))
+        raise refused(f"'{path.name}' must end in {listed_endings}")
     check_writable(path)
     return path
 
@@ -94,13 +94,7 @@ def keep(source: str | Path | None, output: object) -> None:
 
 
 def say(text: str, *, nl: bool = True, err: bool = False) -> None:
-    """Print a text; what could drive a terminal is escaped, wherever it came from.
-
-    Raises
-    ------
-    UsageError
-        SF903 when standard output cannot be written: a full disk. Of standard error nobody hears.
-    """
+    """Print a text, what could drive a terminal escaped; SF903 when standard output cannot be written."""
     _print(printable(text, LAYOUT), nl=nl, err=err)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from symflex.cli.command import Specification, command_of, first_pair
 from symflex.cli.reporting import PICTURES, answer, check_place, emit_json, note, say
-from symflex.errors import Diagnostic, UncertifiedError, UsageError
+from symflex.errors import Diagnostic, UncertifiedError, refused
 from symflex.model import read_settings
 from symflex.options import PeakOptions, RespondOptions, ShapeOptions, axis_ends, duration
 
@@ -136,8 +136,7 @@ def _samples(
     if given.record is None:
         signal = read_signal(place)
     elif (record := record_in_time(place, given.columns)) is None:
-        hint = "a column called time, or --columns t,u,y"
-        raise UsageError(Diagnostic("SF902", f"'{place}' is not a record in time", None, hint))
+        raise refused(f"'{place}' is not a record in time", "a column called time, or --columns t,u,y")
     else:
         signal, measured = record.driven(output)
     for guess in signal.guesses:
@@ -171,15 +170,15 @@ def _check_options(given: RespondOptions, *, is_file: bool) -> None:
         (given.to == "free" and not given.initial, "--to free needs --initial, as in --initial x='1 mm'"),
     ):
         if is_wrong:
-            raise UsageError(Diagnostic("SF902", message))
+            raise refused(message)
     if given.output:
         check_place(given.output, (TABLE, *PICTURES))
         if given.as_json:
-            raise UsageError(Diagnostic("SF902", "give only one of --json and -o"))
+            raise refused("give only one of --json and -o")
     is_figure = Path(given.output or "").suffix in PICTURES
     if not is_figure and any((given.xlim, given.ylim, given.width, given.font)):
         message = "--xlim, --ylim, --width and --font apply only to a figure"
-        raise UsageError(Diagnostic("SF902", message, None, "name one, as in -o step.svg"))
+        raise refused(message, "name one, as in -o step.svg")
 
 
 def _write(response: EnclosedResponse, given: RespondOptions, path: Path) -> None:

@@ -12,4 +12,5 @@ from symflex.errors.exceptions import (
     SymflexError,
     UncertifiedError,
     UsageError,
+    refused,
 )

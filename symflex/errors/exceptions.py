@@ -38,6 +38,11 @@ class UsageError(SymflexError):
     exit_code = 2
 
 
+def refused(message: str, hint: str | None = None) -> UsageError:
+    """Return SF902, the refusal of an argument or option."""
+    return UsageError(Diagnostic("SF902", message, None, hint))
+
+
 class SpecError(SymflexError):
     """A text is not a valid specification."""
 

@@ -13,7 +13,7 @@ import tomllib
 from pathlib import Path
 from typing import Final
 
-from symflex.errors import Diagnostic, UsageError
+from symflex.errors import Diagnostic, UsageError, refused
 from symflex.errors.diagnostic import nearest
 
 FOLDERS: Final[dict[str, str]] = {
@@ -30,18 +30,13 @@ LISTED: Final = "'symflex examples' lists them"
 _PACKAGE: Final = Path(__file__).parents[1]
 
 
-def examples_folder() -> Path:
-    """Return the folder of the examples."""
-    return next(p / "derivations" for p in (_PACKAGE, _PACKAGE.parent) if (p / "derivations").is_dir())
-
-
 def examples() -> dict[str, Path]:
     """Return the paths of all examples by their names, each folder before the models in it.
 
     >>> [name for name in examples() if name.startswith("frames")][:3]
     ['frames', 'frames/l_frame', 'frames/pin_ended_cross']
     """
-    top = examples_folder()
+    top = next(p / "derivations" for p in (_PACKAGE, _PACKAGE.parent) if (p / "derivations").is_dir())
     by_name: dict[str, Path] = {}
     for name in FOLDERS:
         models = sorted(p for p in (top / name).glob("*.toml") if p.name != CLAIMS)
@@ -83,15 +78,11 @@ def find_example(name: str) -> Path:
     try:
         return paths[name.rstrip("/")]
     except KeyError:
-        hint = nearest(name, paths) or LISTED
-        raise UsageError(Diagnostic("SF902", f"there is no example '{name[:64]}'", None, hint)) from None
+        raise refused(f"there is no example '{name[:64]}'", nearest(name, paths) or LISTED) from None
 
 
 def file_or_example(given: str | Path) -> Path:
-    """Return the path that is given, or the example of that name where no such path exists.
-
-    Raises UsageError: SF901 when a name without suffix is neither.
-    """
+    """Return the path that is given, or else the example of that name; SF901 when it is neither."""
     path = Path(given)
     if os.path.lexists(path) or path.suffix:
         return path

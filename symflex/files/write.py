@@ -50,10 +50,7 @@ def check_writable(path: Path) -> None:
 
 
 def check_folder(folder: Path) -> None:
-    """Refuse, before anything is computed for it, a folder that could not be made or written into afterwards.
-
-    Raises UsageError: SF903.
-    """
+    """Refuse, before anything is computed for it, a folder that could not be made or written into: SF903."""
     name = os.fspath(folder)
     if folder.exists() and not folder.is_dir():
         raise _unwritable(name, "it is not a folder")
@@ -69,11 +66,7 @@ def _check_entry(folder: Path, name: str) -> None:
 
 
 def write_folder(folder: Path, files: Mapping[str, str]) -> None:
-    """Write text files into a folder, which is made when it is missing, each as a whole or not at all.
-
-    Texts are given by name of file, and names lead nowhere else. Raises ValueError for a name that is a path.
-    Raises UsageError: SF903 when something cannot be written, see :func:`write_atomically`.
-    """
+    """Write text files, by name, into a folder, made when missing, each as a whole or not at all; SF903."""
     for name in files:
         if name in ("", ".", "..") or Path(name).name != name or "\\" in name or "\0" in name:
             raise ValueError(f"{name!r} is not the name of a file")

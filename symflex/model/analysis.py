@@ -394,11 +394,7 @@ def readable_names(model: Model, broken: Collection[str] = ()) -> Readable:
 
 
 def check_printed(published: Published, readable: Readable) -> list[Diagnostic]:
-    """Return everything wrong with the names and exponents of a printed formula.
-
-    SF210 an unknown name or function, SF212 a name that may not stand there, SF215 lines that use each other
-    in a circle, SF225 an exponent that is not a number.
-    """
+    """Return everything wrong with the names and exponents of a printed formula."""
     meanings = {**readable.definitions, **dict(published.where)}
     roots = [published.expression, *([published.scale] if published.scale is not None else [])]
     problems: list[Diagnostic] = []
@@ -447,10 +443,7 @@ def _unknown(node: Name, known: Collection[str], readable: Readable) -> Diagnost
 def lines_in_order(
     roots: Sequence[Expression], known: Mapping[str, Expression]
 ) -> tuple[list[str], list[str]]:
-    """Return the lines that occur, each after those it uses, and the first circle of lines if there is one.
-
-    The walk is not recursive, as chains may be long; a circle ends it.
-    """
+    """Return the lines that occur, each after those it uses, and the first circle of lines if any."""
     done: dict[str, None] = {}
     followed: list[str] = []
     pending = [(name, False) for root in reversed(roots) for name in reversed(names_among(root, known))]

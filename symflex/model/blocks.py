@@ -69,10 +69,6 @@ class Loads:
         folders = (own, *(Path(folder).resolve() for folder in allow_outside))
         return Loads(folders=folders, settings=settings or {})
 
-    def may_read(self, path: Path) -> bool:
-        """Tell whether a resolved path lies in one of the folders."""
-        return any(path.is_relative_to(folder) for folder in self.folders)
-
 
 @dataclass(frozen=True, slots=True)
 class Origin:
@@ -281,7 +277,7 @@ def _load(reader: Reader, path_text: Text, origin: Origin) -> Model | None:
     except (OSError, RuntimeError):  # a circle of symbolic links
         reader.note("SF901", f"cannot read '{path_text.value}': the path leads in a circle", path_text.span)
         return None
-    if not origin.loads.may_read(path):
+    if not any(path.is_relative_to(folder) for folder in origin.loads.folders):
         message = f"'{path_text.value}' is not in the folder of the specification or one of its subfolders"
         reader.note("SF258", message, path_text.span, ALLOW_HINT)
         return None

@@ -78,10 +78,7 @@ def depends_on_s(expression: Expression, varying: frozenset[str]) -> bool:
 
 
 def check_fields(reader: Reader, fields: Sequence[FieldProblem], around: Surroundings) -> frozenset[str]:
-    """Note everything wrong with the fields apart from units and from points (:func:`check_points`).
-
-    Returned are the names of the fields whose domain is sound.
-    """
+    """Note what is wrong with fields but units and points; return names of those with a sound domain."""
     orders: dict[str, int] = {}
     placed: set[str] = set()
     point = RandomPoint(around.scope, around.definitions)
@@ -136,10 +133,7 @@ def stretches(fields: Sequence[FieldProblem], elements: Sequence[PlacedElement])
 def check_points(
     reader: Reader, expression: Expression, along: Sequence[Stretch], around: Surroundings
 ) -> None:
-    """Note every point of an expression that depends on s or lies outside what it is a point of.
-
-    What is wrong with it otherwise was noted before, and it is passed over.
-    """
+    """Note every point of an expression that depends on s or lies outside what it is a point of."""
     owners = {name: stretch for stretch in along for name in stretch.names}
     noted = {p.span for p in reader.problems}
     inside: set[tuple[str, Expression]] = set()

@@ -52,17 +52,13 @@ if TYPE_CHECKING:
     Radical = tuple[Fraction, Expression, Expression]  # e, a and b of ``(a*s + b)^e``
 
 SIZE_LIMIT = 1_000  # nodes of a definition that is written out
-HALF = 2
-"""The denominator of powers of which a constant may be a factor: its root is a function of constants."""
+HALF = 2  # the denominator of powers of which a constant may be a factor: its root is a function of constants
 MOST_SHEETS = 12
 """The largest common denominator of exponents: polynomials in r have so many times the degree."""
 
 
 def with_branches(draft: Draft, taken: Collection[str]) -> Draft:
-    """Return a draft with a block for the root of s in it, and for each exponential of that.
-
-    What is no root of one ``a*s + b`` stays as it is written, which is refused later.
-    """
+    """Return a draft with a block for the root of s in it, and for each exponential of that."""
     places = draft.expressions()
     written = [n for e in places for n in nodes(e)]
     if not any(n.name == "sqrt" if isinstance(n, Call) else isinstance(n, Power) for n in written):

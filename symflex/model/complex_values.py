@@ -48,15 +48,11 @@ if TYPE_CHECKING:
     from symflex.model.network import Draft
 
 UNIT, ONE = Name(IMAGINARY), Fraction(1)
-MOST_NODES = 2000
-"""Nodes of an expression with its definitions put in; larger ones stay as they are written."""
+MOST_NODES = 2000  # nodes of an expression with its definitions put in; larger ones stay as they are written
 
 
 def with_real_values(draft: Draft) -> Draft:
-    """Return a draft in which j stands only where a value, a block or a signal is not real.
-
-    Definitions and blocks with j that are needed no more are left out.
-    """
+    """Return a draft in which j stands only where a value, a block or a signal is not real."""
     ratios = {b.name: Quotient(*(e for _, e in b.values)) for b in draft.blocks if b.block is BLOCKS["tf"]}
     values = {d.name: d.expression for d in draft.definitions} | ratios
     reading = _ComplexNames({})

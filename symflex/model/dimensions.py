@@ -67,8 +67,7 @@ Solution = tuple[tuple[tuple[Variable, Fraction], ...], Dimension]
 
 PER_SECOND = unit_of("1/s").dimension
 SECOND = unit_of("s").dimension
-EXTREME_EXPONENT = 10**6
-"""Largest exponent of a unit; twenty definitions that square each other pass it."""
+EXTREME_EXPONENT = 10**6  # largest exponent of a unit; twenty definitions that square each other pass it
 
 TIMED = PARAMETER = 2
 """What :class:`Measure` calls a number that is a pole or a time, and a parameter with a unit."""

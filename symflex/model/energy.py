@@ -147,10 +147,7 @@ def _no_derivative(error: ValueError, span: Span | None) -> SpecError:
 def with_motion(
     reader: Reader, sections: Mapping[str, TableValue | None], draft: Draft, taken: Collection[str]
 ) -> tuple[Draft, OperatingPoint | None]:
-    """Return a draft whose ``[equations]`` and ``[energy]`` are linear, and the point at which they are.
-
-    Raises SpecError with all that was noted so far, where there are no linear equations.
-    """
+    """Return a draft whose ``[equations]`` and ``[energy]`` are linear, and the point at which they are."""
     energy = read_energy(reader, sections["energy"], taken)
     inputs = {d.input.name for d in draft.inputs}
     loads = {x.name for x in (*draft.signals, *energy)} | inputs

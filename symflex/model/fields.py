@@ -47,10 +47,7 @@ def read_fields(
 def with_brackets_opened(
     reader: Reader, fields: Sequence[FieldProblem], *, has_coordinate: bool
 ) -> tuple[FieldProblem, ...]:
-    """Return fields whose equations and conditions contain no brackets with primes.
-
-    A field with a bracket that cannot be opened is left out.
-    """
+    """Return fields without brackets with primes; a field with one that cannot be opened is left out."""
     opened_fields = []
     for each in fields:
         every = [u for other in fields for u in other.unknowns]

@@ -72,17 +72,11 @@ class RandomPoint:
         return replace(self, scope=self.scope.within(unknowns))
 
     def constant(self, expression: Expression) -> int:
-        """Return the value of an expression without unknowns.
-
-        Raises ZeroDivisionError when it divides by zero.
-        """
+        """Return the value of an expression without unknowns; it may raise ZeroDivisionError."""
         return self.form(expression).get(None, 0)
 
     def form(self, expression: Expression) -> Form:
-        """Return a linear expression as a form.
-
-        Raises ZeroDivisionError when it divides by zero.
-        """
+        """Return a linear expression as a form; it may raise ZeroDivisionError."""
         match lower(expression):
             case Number(value):
                 return _scaled({None: value.numerator}, _inverse(value.denominator))

@@ -34,8 +34,7 @@ from symflex.model.scope import IN_TIME, ModelScope, outside, without_point
 Degree = Literal["constant", "linear", "unknown"]
 """What an expression is in what varies in time; ``unknown`` when it contains a name that means nothing."""
 
-EXPONENT_LIMIT = 64
-"""As in the text of an expression, see :mod:`symflex.expressions.limits`."""
+EXPONENT_LIMIT = 64  # as in the text of an expression, see :mod:`symflex.expressions.limits`
 SHOWN_PROBLEMS = 20  # more of one expression than anybody reads
 ORDER_LIMIT = 24
 """Highest derivative at a point; those beyond the field's own order follow from its equations."""
@@ -63,10 +62,7 @@ def integer_exponent(exponent: Expression) -> int | None:
 def factored_of(
     expression: Expression, ring: Ring, name: Callable[[str], Factored] | None = None
 ) -> Factored:
-    """Return an expression as a quotient of polynomials; functions, and names by default, are generators.
-
-    Raises TypeError for a power that is no integer, KeyError for what is no generator.
-    """
+    """Return an expression as a quotient of polynomials; functions, and names by default, are generators."""
 
     def generator(name: str) -> Factored:
         return Factored.generator(ring, name)
@@ -95,11 +91,7 @@ def check_expression(expression: Expression, scope: ModelScope, *, constant: boo
 
 
 def check_equation(equation: Equation, scope: ModelScope, *, acts: bool = False) -> list[Diagnostic]:
-    """Return everything wrong with an equation or condition of a field apart from its units.
-
-    The scope of an equation is :meth:`ModelScope.within` its field. With ``acts`` something in it has to vary
-    in time.
-    """
+    """Return everything wrong with an equation or condition of a field apart from its units."""
     degrees = _Degrees(scope, constant=False)
     sides = (equation.left, equation.right)
     terms = [t for side in sides for t in (side.terms if isinstance(side, Sum) else (side,))]

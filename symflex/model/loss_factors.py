@@ -38,8 +38,7 @@ WITH_ROOTS = (
 """What is available with roots of s."""
 WITH_LOSSES = ("a sensitivity", "a mode shape", "an explanation of zeros")
 """What is available with loss factors and complex coefficients, as it asks the equations at a root alone."""
-LOSSY = ("k", "E", "G", "EI", "EA", "GJ", "kappaGA")
-"""Values of elements that their loss factor multiplies."""
+LOSSY = ("k", "E", "G", "EI", "EA", "GJ", "kappaGA")  # values of elements that their loss factor multiplies
 
 
 def with_imaginary_unit(reader: Reader, draft: Draft) -> Draft:

@@ -484,10 +484,7 @@ class InputKind:
         return self.order is not None
 
     def delivered(self, name: str) -> Variable:
-        """Return the unknown that an imposed input of this name delivers.
-
-        An element may bear the input's name: its own quantities are called otherwise.
-        """
+        """Return the unknown that an imposed input delivers; its name may be an element's too."""
         return Variable("through", name, "supplied" if self.quantity == "i" else f"supplied_{self.quantity}")
 
 

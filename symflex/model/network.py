@@ -159,10 +159,7 @@ def _values(
     choices: Mapping[str, str],
     meant: frozenset[str],
 ) -> tuple[tuple[str, Expression], ...] | None:
-    """Return an expression for every parameter that goes with the choices; ``None`` when one is wrong.
-
-    Nothing more is said of what a wrong key plainly meant.
-    """
+    """Return an expression for every parameter that goes with the choices; ``None`` when one is wrong."""
     who = f"{element.type_name} '{entry.key}'"
     given: dict[str, Expression] = {}
     complete = True

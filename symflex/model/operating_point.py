@@ -71,16 +71,12 @@ SOLVE = "solve"
 EXAMPLE = 'for instance x = "x_0", i = "i_0", solve = ["i_0"]'
 SMOOTH = f"write powers, {', '.join(FUNCTIONS)}, atan, and abs and sgn of what has a sign"
 DELAYED = 'write x\' for the derivative of x; what is delayed is a signal of its own: x_d = "exp(-s*T)*x"'
-TRIALS = 200
-"""Random points, of which three are to be in the domain of all functions."""
+TRIALS = 200  # random points, of which three are to be in the domain of all functions
 AGREEING = 3
 BITS = 256
-STEPS = 60
-"""Newton steps, from a value a person gave."""
-DIGITS = 40
-"""Of a parameter that has no formula."""
-LONGEST = 500
-"""Parts of a value at rest in which values above it are put."""
+STEPS = 60  # Newton steps, from a value a person gave
+DIGITS = 40  # of a parameter that has no formula
+LONGEST = 500  # parts of a value at rest in which values above it are put
 
 
 @dataclass(frozen=True)
@@ -332,10 +328,7 @@ class _AboutRest:
                     self.values.setdefault(format_expression(rate), self.at_rest(other))
 
     def at_rest(self, expression: Expression) -> Expression:
-        """Return an expression with the values at rest in place of all that varies.
-
-        Raises ValueError with an absolute value of unknown sign.
-        """
+        """Return an expression with the values at rest in place of all that varies."""
         leaves = {n: self._value_at_rest(format_expression(n)) for n in nodes(expression) if self.varies(n)}
         rest = simplified(
             replace_values(expression, leaves), {format_expression(n): v for n, v in leaves.items()}
@@ -520,10 +513,7 @@ class _AboutRest:
 
 
 def _solved(residual: Expression, unknown: str, wanted: Collection[str]) -> Expression | None:
-    """Return the value for which a residual vanishes, if that is linear in it or in its square.
-
-    What it is divided by is free of all that is wanted.
-    """
+    """Return the value for which a residual vanishes, if that is linear in it or in its square."""
     if any(isinstance(n, Call) and n.name not in FUNCTIONS for n in nodes(residual)):
         return None  # definitions have no atan
     residual = _over_one_line(residual, unknown)

@@ -69,10 +69,7 @@ class Reader:
     problems: list[Diagnostic] = field(default_factory=list)
 
     def take(self, diagnostics: Iterable[Diagnostic]) -> None:
-        """Add problems found elsewhere.
-
-        Raises SpecError with what was found so far, when that is more than anybody would read.
-        """
+        """Add problems found elsewhere; SpecError when they are more than anybody would read."""
         self.problems.extend(diagnostics)
         if len(self.problems) > MAX_PROBLEMS:
             message = f"more than {MAX_PROBLEMS} problems; only the first ones are listed"
@@ -104,10 +101,7 @@ class Reader:
         return None
 
     def keys(self, table: TableValue, allowed: Iterable[str], what: str, example: str = "") -> frozenset[str]:
-        """Note every key that is not allowed, and return those plainly meant by them.
-
-        An example shows what the keys are for.
-        """
+        """Note every key that is not allowed, and return those plainly meant by them."""
         offered = tuple(allowed)
         absent = [k for k in offered if table.get(k) is None]
         keys: set[str] = set()

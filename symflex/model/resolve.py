@@ -126,12 +126,7 @@ def load_model(
 def load_with(
     source: Source, settings: Mapping[str, Setting], *, allow_outside: Iterable[str | Path] = ()
 ) -> Model:
-    """Parse and resolve a text with values in place of declared ones, checked as those in the text are.
-
-    Settings are quantities, or numbers in SI units, by parameter, also of nested models. Raises SpecError for
-    what is wrong with the text itself, UsageError: SF902 an unknown name; SF203, SF209 and others that
-    the same value in the text would cause.
-    """
+    """Parse and resolve a text with values in place of declared ones, checked as those in the text are."""
     folders = tuple(allow_outside)
     model = load_model(source, allow_outside=folders)
     if not settings:
@@ -144,10 +139,7 @@ def load_with(
 
 
 def resolve(spec: Spec, origin: Origin) -> Model:
-    """Give every name, node, unit and value of a specification its meaning.
-
-    Raises SpecError: SF2xx, with every problem found.
-    """
+    """Give every name, node, unit and value of a specification its meaning, or raise every problem."""
     reader = Reader()
     check_header(reader, spec)
     sections = with_formulas_defined({name: read_section(reader, spec, name) for name in SECTIONS})
@@ -321,10 +313,7 @@ def _inherited_parameters(
 
 
 def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> tuple[Model, Mapping[str, Expression]]:
-    """Check names, linearity and units, and turn the draft into a model.
-
-    What is in cycles and read in radians gets its 2 pi wherever it stands; the second result says which.
-    """
+    """Check names, linearity and units, and return the model and where cycles became radians."""
     nodes = {n.name: n for n in draft.nodes}
     placed = tuple(_place(d, nodes) for d in draft.elements)
     inputs = tuple(d.input for d in draft.inputs)

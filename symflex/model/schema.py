@@ -33,8 +33,7 @@ SCHEMA = "http://json-schema.org/draft-07/schema#"
 TEXT: Schema = {"type": "string"}
 WORD = NAME.pattern.removesuffix("\\Z")
 NAMES: Schema = {"pattern": f"^{WORD}$"}
-FREE_NAMES: Schema = {**NAMES, "not": {"enum": list(RESERVED)}}
-"""Names that have no meaning of their own."""
+FREE_NAMES: Schema = {**NAMES, "not": {"enum": list(RESERVED)}}  # names that have no meaning of their own
 NODE: Schema = {"type": "string", "pattern": rf"^{WORD}(\.({'|'.join(COMPONENT_DOMAIN)}))?$"}
 VALUE: Schema = {"type": ["string", "number"], "pattern": "\\S"}
 """A number, a quantity such as "20 kN/m", or an expression."""

@@ -16,7 +16,6 @@ from symflex.model.model import (
     Definition,
     FieldProblem,
     Input,
-    InputKind,
     Model,
     NetworkNode,
     PlacedBlock,
@@ -102,11 +101,7 @@ class ModelScope:
         return name == COORDINATE and name not in self.broken and not any(others)
 
     def lookup(self, expression: Name | Attribute, *, constant: bool) -> Meaning:
-        """Return the meaning of a name; in a constant stand parameters, definitions, blocks, s and pi only.
-
-        Raises SpecError: SF210 unknown, SF211 ambiguous, SF212 not allowed here, SF241 a field without a
-        point, SF245 not allowed in the equations of a field.
-        """
+        """Return the meaning of a name; constants are parameters, definitions, blocks, s and pi only."""
         if isinstance(expression, Attribute):
             return self._lookup_attribute(expression, constant=constant)
         if expression.name in self.inside:
@@ -191,12 +186,6 @@ class ModelScope:
         if constant:
             raise SpecError(_varying(text, meaning, expression.span))
         return meaning
-
-
-def _is_its_node(source: Input, kind: InputKind | None) -> bool:
-    """Tell whether an input is what the node of its own name is: both readings are one value."""
-    names = [str(Variable("node", r.node, r.component)) for r in source.nodes]
-    return kind is not None and kind.order == 0 and names == [source.name]
 
 
 def _is_load(meaning: Meaning) -> bool:
@@ -298,7 +287,9 @@ def build_scope(
     for source in inputs:
         variable = Variable("input", source.name)
         kind = INPUT_KINDS.get(source.kind)
-        if not _is_its_node(source, kind):
+        # What the node of its own name is needs no name: both readings are one value.
+        names = [str(Variable("node", r.node, r.component)) for r in source.nodes]
+        if not (kind is not None and kind.order == 0 and names == [source.name]):
             add(source.name, Meaning("variable", source.name, f"the input '{source.name}'", variable))
         # A voltage input has always been allowed to bear the name of an element, whose current is then read.
         if kind is None or not kind.is_imposed or (source.name, "i") in attributes:

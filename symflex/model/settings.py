@@ -13,7 +13,7 @@ from math import isfinite
 from numbers import Rational
 from typing import TYPE_CHECKING
 
-from symflex.errors import Diagnostic, Source, Span, Text, UsageError, nearest
+from symflex.errors import Diagnostic, Source, Span, Text, UsageError, nearest, refused
 from symflex.expressions import Expression, substitute
 from symflex.model.declarations import DeclaredParameter, one_of, without_sign
 from symflex.model.model import ExactValue, Model, ModelParameter
@@ -41,20 +41,17 @@ def read_settings(texts: Sequence[str], option: str = OPTION) -> dict[str, str]:
         if not (sign and name and value):
             message = f"{option} takes NAME=VALUE, found '{text[:60]}'"
             example = f"{option} k='80 kN/m'" if option == OPTION else f"{option} x='1 mm'"
-            raise UsageError(Diagnostic("SF902", message, None, f"for instance {example}"))
+            raise refused(message, f"for instance {example}")
         if len(value) > 1 and value[0] == value[-1] and value[0] in "'\"":
             value = value[1:-1]  # as a specification writes it
         if name in settings:
-            raise UsageError(Diagnostic("SF902", f"'{name[:64]}' is set twice"))
+            raise refused(f"'{name[:64]}' is set twice")
         settings[name] = value
     return settings
 
 
 def check_names(model: Model, settings: Mapping[str, Setting]) -> None:
-    """Refuse names that are not parameters of a model.
-
-    Raises UsageError: SF902 with the nearest name.
-    """
+    """Refuse names that are not parameters of a model: SF902 with the nearest name."""
     known = [p.name for p in model.parameters]
     others = {d.name: "a definition, and follows from parameters" for d in model.definitions}
     others |= {b.name: "a block" for b in model.blocks} | {u.name: "an element" for u in model.elements}
@@ -62,8 +59,7 @@ def check_names(model: Model, settings: Mapping[str, Setting]) -> None:
         if name not in known:
             hint = nearest(name, known) or "parameters: " + (", ".join(known[:8]) or "none")
             kind = f"'{name}' is {others[name]}: " if name in others else ""
-            message = f"{kind}there is no parameter '{name[:64]}'"
-            raise UsageError(Diagnostic("SF902", message, None, hint))
+            raise refused(f"{kind}there is no parameter '{name[:64]}'", hint)
 
 
 def settled(
@@ -145,10 +141,7 @@ def spread_box(
 
 
 def exact_number(name: str, given: object) -> Fraction:
-    """Return the value given for a parameter, of a double the shortest decimal that prints it.
-
-    Raises UsageError: SF902 for what is not a finite number of Python, SymPy, or numpy (an array has one).
-    """
+    """Return the value given for a parameter, of a double the shortest decimal that prints it."""
     if isinstance(given, float | Decimal) and isfinite(given):
         # A numpy double is a float whose own repr is not a number.
         return Fraction(Decimal(float.__repr__(given)) if isinstance(given, float) else given)
@@ -158,7 +151,7 @@ def exact_number(name: str, given: object) -> Fraction:
     if isinstance(given, Rational):
         return Fraction(int(given.numerator), int(given.denominator))
     hint = "give an int, float, Fraction or Decimal, or a text with a unit"
-    raise UsageError(Diagnostic("SF902", f"the value of '{name}' must be a finite number", None, hint))
+    raise refused(f"the value of '{name}' must be a finite number", hint)
 
 
 Values = tuple[tuple[str, "Expression"], ...]

@@ -48,8 +48,7 @@ Polynomial = dict[Monomial, Fraction]
 
 TERM_LIMIT = 64
 DEGREE_LIMIT = 64
-BIT_LIMIT = 4_000
-"""Lengths people write stay far below; beyond, no sign is told rather than much computed."""
+BIT_LIMIT = 4_000  # lengths people write stay far below; beyond, no sign is told rather than much computed
 
 
 @dataclass(frozen=True)
@@ -350,11 +349,7 @@ def check_ranges(
 
 
 def check_value(model: Model, name: str, value: ExactValue, varied: Collection[str]) -> None:
-    """Refuse a value of a parameter with which a distributed part is what none can be.
-
-    All other parameters keep their declared values, but for those ``varied``, which do not count. Raises
-    UsageError: SF209 a length, stiffness or delay of a sign it cannot have.
-    """
+    """Refuse a value of a parameter with which a distributed part is what none can be: SF209."""
     exact = {p.name: p.value for p in model.parameters if p.value and p.name not in varied} | {name: value}
     line = Line(
         {d.name: d.expression for d in model.definitions},
@@ -410,10 +405,7 @@ def _slope_along(value: Expression, x: arb, line: Line) -> arb | None:
 
 
 def _sign_along(value: Expression, length: Expression, line: Line) -> int | None:
-    """Return the sign that a value is proved to have all along a member, but at its ends; else None.
-
-    There it may be zero: a wedge ends in a tip.
-    """
+    """Return the sign that a value is proved to have along a member but at its ends; else None."""
     match value:
         case Negative(operand):
             sign = _sign_along(operand, length, line)
@@ -504,10 +496,7 @@ def follows_inputs(use: PlacedElement, line: Line, inputs: Collection[str]) -> b
 
 
 def parameter_signs(use: PlacedElement, line: Line) -> dict[str, int | None]:
-    """Return the signs of an element's parameters, ``None`` if one cannot be decided.
-
-    One that varies along a member has a sign where that is proved to be positive everywhere.
-    """
+    """Return the signs of an element's parameters, all along a member, ``None`` if one is undecided."""
     element, given = use.element, dict(use.values)
     signs = {name: line.sign(value) for name, value in given.items()}
     if isinstance(element, LineElement) and None in signs.values():

@@ -43,11 +43,7 @@ def check_units(
     *,
     infers: bool = True,
 ) -> DimensionSystem:
-    """Measure every expression; of one that is unsound, only what disagrees within it is noted.
-
-    Fields that are not ``fields_placed`` have no sound domain, and x is measured in any unit there. Unless it
-    ``infers`` them, parameters without unit fit any.
-    """
+    """Measure every expression; of one that is unsound, only what disagrees within it is noted."""
     quantities = declared_quantities(draft.declared, draft.inherited)
     dimensions = _known_dimensions(draft, placed)
     blocks = {b.name: _block_gain(b) for b in draft.blocks}
@@ -149,10 +145,7 @@ def constant_measure(
 
 
 def printed_in_cycles(published: Published, draft: Draft, turned: Mapping[str, Expression]) -> Published:
-    """Return a printed formula with 2 pi beside every parameter that is read in radians.
-
-    A formula that converts one by itself, ``2*pi*f``, is left as it is.
-    """
+    """Return a printed formula with 2 pi beside every parameter that is read in radians."""
     if not turned:
         return published
     quantities = declared_quantities(draft.declared, draft.inherited)

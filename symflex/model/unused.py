@@ -18,11 +18,7 @@ ALIKE = 0.8  # least ratio of difflib for a typing error: 'grond' is 0.9 like 'g
 
 
 def unused(model: Model) -> tuple[Diagnostic, ...]:
-    """Return a warning for every loose node and for every name that nothing uses.
-
-    SF650 a node that one element touches, or that branches join to one other node only, and that nothing
-    reads or drives; SF651 a parameter, block, signal, free input or field that nothing uses.
-    """
+    """Return a warning for every loose node (SF650) and for every name that nothing uses (SF651)."""
     used = _uses(model)
     return (*_loose_nodes(model, used), *_unused_names(model, used))
 

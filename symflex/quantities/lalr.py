@@ -116,10 +116,7 @@ class Reading:
         self.values: list[Any] = []
 
     def words(self) -> Iterator[Token]:
-        """Yield each word before it is read.
-
-        Raises UnexpectedError where the text is not of the language.
-        """
+        """Yield each word before it is read; UnexpectedError where the text is not of the language."""
         place = 0
         while token := self._grammar.word(self._text, place, self._states[-1]):
             yield token

@@ -161,11 +161,7 @@ class Arrays:
 
 
 def rounded(system: StateSpace, values: Mapping[str, ExactValue] | None = None) -> Arrays:
-    """Return the matrices with every entry the double nearest to its exact value.
-
-    SF229 for a parameter without value, SF231 when these values divide by zero, SF233 when an entry is too
-    large or too small for double precision, SF401 when it cannot be decided whether an entry is zero.
-    """
+    """Return the matrices with every entry the double nearest to its exact value."""
     rounding = rounding_of(system, values)
     arrays = []
     for letter, rows, shape in system.matrices:

@@ -132,10 +132,7 @@ class _Splitter:
         self._taken = self._varying | {item.name for group in fixed for item in group}
 
     def apart(self, owner: str, expression: Expression) -> Expression:
-        """Return an expression with new signals in place of blocks, and of filters in a sum, times something.
-
-        ``owner`` has the expression as its value; signals in a sum are named after it.
-        """
+        """Return an expression with signals, named by ``owner``, for blocks, and filters in a sum."""
         match expression:
             case Sum(terms):
                 denominators = [_denominators(t) for t in terms]

@@ -116,13 +116,7 @@ def realise_quotient(
     model: Model,
     pair: tuple[str, str],
 ) -> StateSpace:
-    """Return state equations of a rational function of s in a model that is not rational itself.
-
-    The states are those of one differential equation for the output: its derivatives, or the partial state.
-    ``constants`` are what the function generators of its ring stand for, ``radicals`` the relations of roots
-    among them; the model has names and units of the
-    ends. SF236 when it grows with s.
-    """
+    """Return state equations of a rational function of s in a model that is not rational itself."""
     output, source = pair
     ring = ratio.ring
     y = Variable("value", output)
@@ -334,7 +328,11 @@ class _Realisation:
             states, flows = self._divided(self.solved.reduced(result), place)
             total = _followed(states, flows, direct)
             if any(row for power, row in total.items() if power):
-                raise self._improper(name, total, inputs)
+                sources = sorted({j for power, row in total.items() if power for j in row})
+                pairs = ", ".join(f"{name}/{inputs[j]}" for j in sources)
+                message = f"{pairs} has more zeros than poles: no state equations have its output"
+                hint = "leave it out, or take an output with fewer derivatives"
+                raise ModelError(Diagnostic("SF236", message, None, hint))
             c.append(states)
             d.append(total.get(0, {}))
         self._prove(a, b, direct, place)
@@ -365,13 +363,6 @@ class _Realisation:
             else:
                 flows.setdefault(power, {})[column - count] = value
         return states, flows
-
-    def _improper(self, name: str, flows: Mapping[int, Vector], inputs: Sequence[str]) -> ModelError:
-        sources = sorted({j for power, row in flows.items() if power for j in row})
-        pairs = ", ".join(f"{name}/{inputs[j]}" for j in sources)
-        message = f"{pairs} has more zeros than poles: no state equations have its output"
-        hint = "leave it out, or take an output with fewer derivatives"
-        return ModelError(Diagnostic("SF236", message, None, hint))
 
     def _prove(
         self,

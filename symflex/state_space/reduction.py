@@ -186,10 +186,7 @@ def _state(vector: Vector, pivot: int, number: int, states: Sequence[State], tak
 def _at_random_point(
     start: Sequence[Vector], rows: Sequence[Vector], system: StateSpace, seed: int
 ) -> tuple[int, dict[int, dict[int, int]]] | None:
-    """Return a prime, and the least such space modulo it with random numbers in place of parameters.
-
-    Entries stand by pivot. The result is ``None`` if no numbers satisfy the relations of roots.
-    """
+    """Return a prime and the least such space modulo it, by pivot; ``None`` where roots have no values."""
     n = system.order
     point = system.radicals.point(seed)
     if point is None:

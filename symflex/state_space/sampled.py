@@ -24,7 +24,7 @@ import numpy as np
 from flint import arb, arb_mat
 
 from symflex.balls import ball, precision, precisions
-from symflex.errors import Diagnostic, ModelError, UsageError
+from symflex.errors import Diagnostic, ModelError, refused
 from symflex.errors.diagnostic import nearest
 from symflex.errors.optional import installed
 from symflex.model.model import PI_NEARLY, ExactValue
@@ -63,19 +63,16 @@ class Sampling:
     def __post_init__(self) -> None:
         if self.method not in METHODS:
             hint = nearest(self.method, METHODS) or "methods: " + ", ".join(METHODS)
-            message = f"there is no sampling method '{self.method[:64]}'"
-            raise UsageError(Diagnostic("SF902", message, None, hint))
+            raise refused(f"there is no sampling method '{self.method[:64]}'", hint)
         if not self.sample > 0:
-            raise UsageError(Diagnostic("SF902", "a sampling time must be positive"))
+            raise refused("a sampling time must be positive")
         if self.prewarp is None:
             return
         if self.method != "tustin":
-            message = f"prewarping applies to 'tustin', not to '{self.method}'"
-            raise UsageError(Diagnostic("SF902", message))
+            raise refused(f"prewarping applies to 'tustin', not to '{self.method}'")
         if not 0 < self.prewarp.nearly * self.sample < PI_NEARLY:
             message = "the prewarping frequency must be positive and below half of the sampling frequency"
-            hint = f"that is {1 / (2 * float(self.sample)):g} Hz"
-            raise UsageError(Diagnostic("SF902", message, None, hint))
+            raise refused(message, f"that is {1 / (2 * float(self.sample)):g} Hz")
 
     @property
     def seconds(self) -> arb:
@@ -93,11 +90,10 @@ class Sampling:
     def check_delay(self, delay: Fraction) -> None:
         """Refuse a delay [s] that is negative, or takes too many states, with SF902."""
         if not 0 <= delay <= MOST_SAMPLES * self.sample:
-            raise UsageError(Diagnostic("SF902", f"a delay has from 0 to {MOST_SAMPLES} samples"))
+            raise refused(f"a delay has from 0 to {MOST_SAMPLES} samples")
         if self.method != "zoh" and (delay / self.sample).denominator != 1:
             message = f"'{self.method}' cannot represent a delay of {float(delay / self.sample):.6g} samples"
-            hint = "use zoh, or a sampling time that divides it"
-            raise UsageError(Diagnostic("SF902", message, None, hint))
+            raise refused(message, "use zoh, or a sampling time that divides it")
 
 
 def sampling_of(
@@ -213,9 +209,7 @@ def sampled(
     sampling.check_delay(delay)
     if sampling.method == "matched":
         message = "'matched' applies to one transfer function, not to state equations"
-        raise UsageError(
-            Diagnostic("SF902", message, None, "use tustin, or export code with --to c or numpy")
-        )
+        raise refused(message, "use tustin, or export code with --to c or numpy")
     states, inputs, outputs = names
     whole = ceil(delay / sampling.sample)
     stepped = _stepped if sampling.method == "zoh" else _bilinear
@@ -254,7 +248,7 @@ def _bilinear(
         inverse = (arb_mat(n, n, k) - a).inv()
     except ZeroDivisionError:
         message = f"a pole at {float(k):g} rad/s, or one very near, is taken to infinity by tustin"
-        raise UsageError(Diagnostic("SF902", message, None, "choose another sampling time")) from None
+        raise refused(message, "choose another sampling time") from None
     given = inverse * b * 2
     step = inverse * (arb_mat(n, n, k) + a)
     return _with_past_inputs(step, given, given * 0, c * inverse * k, d + c * given * arb(0.5), whole)
@@ -263,10 +257,7 @@ def _bilinear(
 def _with_past_inputs(
     step: arb_mat, older: arb_mat, newer: arb_mat, c: arb_mat, d: arb_mat, whole: int
 ) -> tuple[arb_mat, arb_mat, arb_mat, arb_mat]:
-    """Return matrices with past inputs as states after the others, u[k - whole] to u[k - 1].
-
-    In a step ``older`` takes the first of these, ``newer`` the next; the output reads the first.
-    """
+    """Return matrices with past inputs as states after the others, u[k - whole] to u[k - 1]."""
     n, m, p = older.nrows(), older.ncols(), c.nrows()
     if not whole:
         return step, older + newer if n else newer, c, d

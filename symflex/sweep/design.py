@@ -19,7 +19,7 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from symflex.errors import BudgetError, Diagnostic, Source, Span, SpecError, Text, UsageError
+from symflex.errors import BudgetError, Diagnostic, Source, Span, SpecError, Text, UsageError, refused
 from symflex.loops import pick_gain
 from symflex.model import ExactValue, Model, ModelParameter, check_value, with_numbers
 from symflex.quantities import parse_quantity
@@ -149,10 +149,7 @@ def between(limits: Range, count: int) -> tuple[ExactValue, ...]:
 
 
 def points_between(start: Point, end: Point, pieces: int) -> list[Point] | None:
-    """Return the points that divide the way from one point to another into equal pieces.
-
-    The result is ``None`` if their values differ by a power of pi.
-    """
+    """Return the points that divide a way into equal pieces; None if values differ by a power of pi."""
     if any(a.pi_power != b.pi_power for a, b in zip(start, end, strict=True)):
         return None
     ways = [(a.rational, b.rational - a.rational, a.pi_power) for a, b in zip(start, end, strict=True)]
@@ -205,10 +202,7 @@ def fingerprint(task: Task) -> str:
 
 
 def derived(task: Task, *symbols: str) -> AnyTransferFunction:
-    """Return the task's transfer function, with the swept parameters and others as symbols.
-
-    That of a large network is in nested form.
-    """
+    """Return the task's function with swept parameters and others as symbols; nested if large."""
     model, pairs = with_numbers(task.model, (*task.names, *symbols)), [task.pair]
     return derive_as(model, pairs)[0][0] if model.is_distributed else derive_all(model, pairs)[0]
 
@@ -244,7 +238,7 @@ def read_design(
     ['1', '10', '100']
     """
     if not texts:
-        raise UsageError(Diagnostic("SF902", "no parameter to sweep", None, f"add --over: {FORMS}"))
+        raise refused("no parameter to sweep", f"add --over: {FORMS}")
     return _design([_read(parameters, text) for text in texts], draws, seed)
 
 
@@ -269,19 +263,15 @@ def design_of(
         parameter = pick_gain(parameters, name)
         exact = tuple(_assumed(parameter, value) for value in said)
         if not exact:
-            raise UsageError(Diagnostic("SF902", f"'{name}' has no values"))
+            raise refused(f"'{name}' has no values")
         read.append(Axis(name, exact))
     if not read:
-        raise UsageError(Diagnostic("SF902", "no parameter to sweep"))
+        raise refused("no parameter to sweep")
     return _design(read, draws, seed)
 
 
 def check_design(model: Model, design: Design) -> None:
-    """Refuse values that would give a beam a length of zero, a delay a negative time, and the like: SF209.
-
-    The smallest and the largest value of each swept parameter are looked at, with the declared values of
-    those that are not swept.
-    """
+    """Refuse values that would give a beam a length of zero, a delay a negative time, and the like: SF209."""
     ends = [(axis.name, axis.values) for axis in design.axes]
     ends += [(each.name, (each.low, each.high)) for each in design.ranges]
     for name, values in ends:
@@ -293,15 +283,15 @@ def _design(sides: Sequence[Axis | Range], draws: int, seed: int) -> Design:
     names = [each.name for each in sides]
     for i, name in enumerate(names):
         if name in names[:i]:
-            raise UsageError(Diagnostic("SF902", f"'{name}' is swept twice"))
+            raise refused(f"'{name}' is swept twice")
     axes = tuple(each for each in sides if isinstance(each, Axis))
     ranges = tuple(each for each in sides if isinstance(each, Range))
     if ranges and not draws:
         hint = "give a count, as in k=1:10:lin:50, or draw with --monte-carlo N"
-        raise UsageError(Diagnostic("SF902", f"how many values of '{ranges[0].name}'?", None, hint))
+        raise refused(f"how many values of '{ranges[0].name}'?", hint)
     if draws and not ranges:
         hint = "leave out the count of a range, as in k=1:10 or k=1:10:log"
-        raise UsageError(Diagnostic("SF902", "there is no range to draw from", None, hint))
+        raise refused("there is no range to draw from", hint)
     return Design(axes, ranges, draws, seed)
 
 
@@ -357,8 +347,7 @@ def _count(whole: str, exponent: str | None) -> int:
 def _about(parameter: ModelParameter, said: str, text: str) -> Range:
     """Return a range about the declared value: ``5%`` of it, or an amount in its unit."""
     if parameter.value is None:
-        message = f"'{parameter.name}' has no declared value to vary about"
-        raise UsageError(Diagnostic("SF902", message, None, "give both limits"))
+        raise refused(f"'{parameter.name}' has no declared value to vary about", "give both limits")
     value = parameter.value
     if said.endswith("%"):
         source = Text(said[:-1].strip(), Span(Source("--over", said), 0, len(said)))
@@ -381,14 +370,13 @@ def _about(parameter: ModelParameter, said: str, text: str) -> Range:
 def _range(parameter: ModelParameter, low: ExactValue, high: ExactValue, scale: Scale, text: str) -> Range:
     if low.pi_power != high.pi_power and low.rational and high.rational:
         message = f"the limits of '{parameter.name}' differ by a power of pi"
-        raise UsageError(Diagnostic("SF902", message, None, "write both in the same unit"))
+        raise refused(message, "write both in the same unit")
     power = high.pi_power if high.rational else low.pi_power
     low, high = ExactValue(low.rational, power), ExactValue(high.rational, power)
     if low.rational == high.rational:
-        raise UsageError(Diagnostic("SF902", f"the limits of '{parameter.name}' are equal: '{text[:60]}'"))
+        raise refused(f"the limits of '{parameter.name}' are equal: '{text[:60]}'")
     if scale == "log" and not Fraction(0) < low.rational * high.rational:
-        message = f"a logarithmic range of '{parameter.name}' needs limits of one sign, other than 0"
-        raise UsageError(Diagnostic("SF902", message))
+        raise refused(f"a logarithmic range of '{parameter.name}' needs limits of one sign, other than 0")
     return Range(parameter.name, low, high, scale)
 
 
@@ -399,8 +387,7 @@ def _value(parameter: ModelParameter, item: str, text: str) -> ExactValue:
         return _assumed(parameter, item)
     except SpecError as error:
         told = error.diagnostics[0]
-        message = f"--over '{text[:60]}': {told.message}"
-        raise UsageError(Diagnostic("SF902", message, None, told.hint or f"write {FORMS}")) from None
+        raise refused(f"--over '{text[:60]}': {told.message}", told.hint or f"write {FORMS}") from None
 
 
 def _assumed(parameter: ModelParameter, given: Given) -> ExactValue:
@@ -416,4 +403,4 @@ def _assumed(parameter: ModelParameter, given: Given) -> ExactValue:
 
 
 def _unreadable(text: str) -> UsageError:
-    return UsageError(Diagnostic("SF902", f"cannot read '{text[:60]}'", None, f"write {FORMS}"))
+    return refused(f"cannot read '{text[:60]}'", f"write {FORMS}")

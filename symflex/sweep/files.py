@@ -22,7 +22,7 @@ from pathlib import Path
 import numpy as np
 
 from symflex.data.measurement.array_files import read_archive, read_netcdf, require
-from symflex.errors import DataError, Diagnostic, UsageError
+from symflex.errors import DataError, Diagnostic, UsageError, refused
 from symflex.errors.optional import installed
 from symflex.files import write
 from symflex.files.write import write_atomically
@@ -161,13 +161,9 @@ WRITERS: dict[str, Callable[[Sweep], bytes]] = {
 
 
 def check_writable(path: Path) -> None:
-    """Refuse, before anything is computed, a file that cannot be written afterwards.
-
-    SF902 an ending that stands for no format; SF914 the library it needs is not installed; SF903 no such
-    folder, or what is there is not a file.
-    """
+    """Refuse, before anything is computed, a file that cannot be written: SF902, SF903 or SF914."""
     if path.suffix.lower() not in WRITERS:
-        raise UsageError(Diagnostic("SF902", f"'{path.name}' must end in {', '.join(WRITERS)}"))
+        raise refused(f"'{path.name}' must end in {', '.join(WRITERS)}")
     if path.suffix.lower() == ".parquet":
         installed("pyarrow")
     write.check_writable(path)
@@ -320,11 +316,7 @@ class FolderJournal:
 
 
 def open_journal(output: Path, key: str, *, is_fresh: bool = False) -> FolderJournal:
-    """Return the journal of the sweep whose result goes to a file: the folder ``FILE.part`` beside it.
-
-    ``key`` is :func:`symflex.sweep.sweep_key`; a fresh journal starts anew, whatever is there. SF916 the
-    folder belongs to another sweep, or is not a journal; SF903 it cannot be made.
-    """
+    """Return the journal ``FILE.part`` of the sweep with this key; SF916 when it belongs to another."""
     folder = output.with_name(output.name + ".part")
     with _writing(folder):
         _prepare(folder, key, is_fresh=is_fresh)

@@ -397,10 +397,7 @@ QUANTITIES: dict[str, Callable[[Task], Solver]] = {
 
 
 def solve_chunk(pickled: bytes, points: Sequence[Point]) -> Rows:
-    """Return the results at some points; the model is derived once in each process.
-
-    ``pickled`` is a :class:`~symflex.sweep.task.Task`, as the process that started the sweep wrote it.
-    """
+    """Return the results at some points; the pickled task's model is derived once in each process."""
     return _solver(pickled)(points)
 
 

@@ -22,7 +22,7 @@ from time import monotonic
 import numpy as np
 
 from symflex.budget import Silent
-from symflex.errors import BudgetError, Diagnostic, UsageError
+from symflex.errors import BudgetError, Diagnostic, UsageError, refused
 from symflex.errors.optional import installed
 from symflex.files.lock import held
 from symflex.files.write import write_atomically
@@ -261,11 +261,7 @@ def time_left(seconds: float) -> str:
 
 
 def plan_sweep(model: Model, given: SweepOptions, frequencies: Sequence[float] = ()) -> tuple[Task, Design]:
-    """Return what is asked for at every point, and the points.
-
-    Frequencies of a response [Hz] are by default equally spaced in their logarithm. SF902 what cannot be
-    swept, read or meant; SF507 too many points.
-    """
+    """Return what is asked for at every point, and the points."""
     if given.of != "response":
         check_causal(model, f"a sweep of {given.of}")
     pair = pick_pairs(model, [given.tf] if given.tf else [])[0]
@@ -280,8 +276,7 @@ def plan_sweep(model: Model, given: SweepOptions, frequencies: Sequence[float] =
     elif given.of == "response" and not len(frequencies):
         band = model.analysis.band if given.band is None else band_ends(given.band, above_zero=True)
         if band is None:
-            hint = "give one with --band LO HI"
-            raise UsageError(Diagnostic("SF902", "the specification has no [analysis] band", None, hint))
+            raise refused("the specification has no [analysis] band", "give one with --band LO HI")
         frequencies = logarithmic(*band, given.count or FREQUENCIES)
     return sweep_task(model, pair, design, given.of, region, frequencies, given.gain or ""), design
 
@@ -295,11 +290,7 @@ def sweep_task(
     frequencies: Sequence[float] = (),
     gain: str = "",
 ) -> Task:
-    """Return what is wanted at every point of a design; see :class:`symflex.sweep.Task`.
-
-    SF902 when margins are wanted and there is no such gain; SF209 a value with which a length, stiffness or
-    delay has a sign it cannot have.
-    """
+    """Return what is wanted at every point of a design; SF209 for a value with an impossible sign."""
     if of == "margins":
         pick_gain(model.parameters, gain)
     check_design(model, design)

@@ -94,7 +94,13 @@ class Sweep(Printed):
             yield Passage([*proved, *_doubts(self)])
             more = self["status"].shape[-1] - MODES_SHOWN
             shown = f"the lowest {MODES_SHOWN} modes, and {more} more" if more > 0 else "modes"
-            yield Passage([INDENT + shown], _mode_rows(self))
+            rows: list[tuple[str, ...]] = [("mode", "frequency [Hz]", "damping ratio", "points")]
+            every = range(self["status"].shape[-1])
+            for k in every[:MODES_SHOWN]:
+                there = self["status"][..., k] > 0
+                spans = (_span(self[name][..., k][there]) for name in ("frequency_hz", "damping_ratio"))
+                rows.append((str(k + 1), *spans, str(int(np.sum(there)))))
+            yield Passage([INDENT + shown], rows)
         else:
             yield Passage(proved)
             if self.of == "margins":
@@ -158,11 +164,7 @@ def _described(each: Labelled) -> dict[str, str]:
 def assembled(
     task: Task, design: Design, rows: Rows, attributes: Mapping[str, str], between: Between | None = None
 ) -> Sweep:
-    """Return the sweep that the rows of all points, in order, make.
-
-    ``attributes`` are added to what the task says; ``between`` solves points between others where names are
-    in doubt, see :func:`symflex.sweep.follow.follow`.
-    """
+    """Return the sweep that all rows make; ``between`` solves points where names are in doubt."""
     dims = tuple(label(axis.name) for axis in design.axes) + ((DRAW,) if design.draws else ())
     coordinates = list(_parameters(task, design))
     if design.draws:
@@ -305,17 +307,6 @@ def _doubts(sweep: Sweep) -> list[str]:
     return lines + [f"{INDENT}{text}" for text in _links(sweep)]
 
 
-def _mode_rows(sweep: Sweep) -> list[tuple[str, ...]]:
-    """Return a table of the lowest modes: between which values each moves."""
-    rows: list[tuple[str, ...]] = [("mode", "frequency [Hz]", "damping ratio", "points")]
-    every = range(sweep["status"].shape[-1])
-    for k in every[:MODES_SHOWN]:
-        there = sweep["status"][..., k] > 0
-        spans = (_span(sweep[name][..., k][there]) for name in ("frequency_hz", "damping_ratio"))
-        rows.append((str(k + 1), *spans, str(int(np.sum(there)))))
-    return rows
-
-
 def _links(sweep: Sweep) -> list[str]:
     counts = _link_counts(sweep)
     said = (
@@ -356,10 +347,7 @@ def _span(values: Array) -> str:
 
 
 def sweep_json(sweep: Sweep) -> dict[str, object]:
-    """Return the summary in the schema ``symflex.sweep/1``; the arrays themselves are for files.
-
-    Ranges are ``[smallest, largest]``, or ``null`` where there is no finite value.
-    """
+    """Return the summary in the schema ``symflex.sweep/1``; the arrays themselves are for files."""
     document: dict[str, object] = {
         **dict(sweep.attributes),
         "certified": sweep.is_certified,

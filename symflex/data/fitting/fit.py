@@ -35,7 +35,7 @@ from symflex.data.fitting.problem import FitProblem, fit_problem
 from symflex.data.fitting.resonances import LOGARITHMIC, UNITS, Complex, Free, Mask, Resonances, Values, Whole
 from symflex.data.fitting.starts import with_delays
 from symflex.data.measurement import MeasuredResponse
-from symflex.errors import DataError, Diagnostic, FitError, UsageError, nearest
+from symflex.errors import DataError, Diagnostic, FitError, nearest, refused
 from symflex.options import FitOptions
 
 SLOPES = tuple(range(-4, 5))
@@ -162,10 +162,7 @@ class ResonanceFit:
         return sorted(result)
 
     def standard_errors(self) -> Resonances:
-        """Return the standard error of every parameter, in a record of the same shape; 0 if it was fixed.
-
-        Those that the data do not determine are infinite.
-        """
+        """Return the standard error of every parameter, in their shape; 0 if fixed, inf if undetermined."""
         modes = self.resonances
         n, free = modes.count, self.problem.free
         covariance = self.refined.covariance
@@ -234,9 +231,9 @@ def fit_resonances(
     for name, allowed, what in choices:
         if name not in allowed:
             hint = nearest(name, allowed) or f"choose from: {', '.join(allowed)}"
-            raise UsageError(Diagnostic("SF902", f"there is no {what} '{name[:64]}'", None, hint))
+            raise refused(f"there is no {what} '{name[:64]}'", hint)
     if bases is not None and given.slope is not None:
-        raise UsageError(Diagnostic("SF902", "a power of s is for fits without a base"))
+        raise refused("a power of s is for fits without a base")
     for response in measured:
         needed = max(FEWEST_LINES, 4 * (given.modes or 1) + 2)
         if response.values.size < needed:
@@ -256,8 +253,7 @@ def _fit(
     is_lag_free = given.is_lag_free or given.is_lag_signed
     free = Free(given.is_gain_free, is_lag_free, given.is_delay_free, given.is_lag_signed)
     if free.delay and any(one.is_magnitude for one in measured):
-        message = "a delay leaves no trace in a magnitude without a phase"
-        raise UsageError(Diagnostic("SF902", message, None, "leave --delay out"))
+        raise refused("a delay leaves no trace in a magnitude without a phase", "leave --delay out")
     problem = fit_problem(measured, [base.function for base in bases], free, has_base=has_base, slopes=slopes)
     for line, base in zip(problem.lines, bases, strict=True):
         wrong = ~np.isfinite(line.base) | (line.base == 0)
@@ -342,7 +338,16 @@ def _settled(candidate: Candidate, problem: FitProblem) -> tuple[Candidate, FitP
     """Return the fit with its own noise, and without the lines that it finds to be wild."""
     candidate, problem = with_own_noise(candidate, problem)
     for _ in range(ROUNDS):
-        again = problem.readmitted(_fitting_lines(problem, candidate))
+        lines = []
+        for r, line in enumerate(problem.lines):
+            every = line.every
+            factor = candidate.refined.resonances.factor(r, every.observation.omega)
+            model = every.observation(every.base * factor)
+            off = np.abs(every.rest(model)) / line.deviation_of_every()
+            # What is larger than the noise everywhere is no matter of single lines.
+            off = off / max(float(np.median(off)) / MEDIAN, 1.0 if problem.has_scale else 0.0)
+            lines.append(_kept(every, np.flatnonzero(off > WILD)))
+        again = problem.readmitted(lines)
         if again is problem:
             break
         candidate, problem = with_own_noise(refitted(candidate, again), again)
@@ -374,20 +379,6 @@ def _seen(problem: FitProblem, response: int, resonances: Resonances) -> Whole:
 
 def _kept(line: FittedLines, wild: Whole) -> Whole:
     return np.delete(np.arange(line.omega.size), isolated(wild, line.omega.size))
-
-
-def _fitting_lines(problem: FitProblem, candidate: Candidate) -> list[Whole]:
-    """Return the lines of each response that the fit describes, or that are too many to be called wild."""
-    lines = []
-    for r, line in enumerate(problem.lines):
-        every = line.every
-        factor = candidate.refined.resonances.factor(r, every.observation.omega)
-        model = every.observation(every.base * factor)
-        off = np.abs(every.rest(model)) / line.deviation_of_every()
-        # What is larger than the noise everywhere is no matter of single lines.
-        off = off / max(float(np.median(off)) / MEDIAN, 1.0 if problem.has_scale else 0.0)
-        lines.append(_kept(every, np.flatnonzero(off > WILD)))
-    return lines
 
 
 def _poor(fit: ResonanceFit) -> tuple[str, ...]:

@@ -46,8 +46,7 @@ HANN_SHARES = (4 / 9, 1 / 36, 0.0)
 
 They are the squares of 2/3, 1/6 and 0, the correlations of its spectrum -1/4, 1/2, -1/4 with itself.
 """
-SINGULAR = 1e-12
-"""Reciprocal condition number below which the inverse in doubles has four digits at most."""
+SINGULAR = 1e-12  # reciprocal condition number below which the inverse in doubles has four digits at most
 FLAT = 0.25  # damping ratio of a pair of zeros from which no sharp trough shows where it lies
 NEXT_TERM = 0.5
 """Deviation of further terms of what lies outside the band, over those of the zeros there, at its end."""
@@ -89,11 +88,7 @@ class Refined:
 def refine(
     problem: FitProblem, start: Resonances, steps: int = STEPS, tolerance: float = TOLERANCE
 ) -> Refined:
-    """Return the minimum that a start leads to: logarithmic first, then complex where deviations are known.
-
-    The start has positive frequencies and pole damping; each of the two residuals is evaluated ``steps``
-    times at most.
-    """
+    """Return the minimum that a start leads to: logarithmic, then complex where deviations are known."""
     # On the way the effect of the window does not matter, and without it a step takes a sixth of the time.
     plain = problem.without_window() if problem.has_deviations else problem
     first = ROUGH if problem.has_deviations else tolerance
@@ -364,10 +359,7 @@ class _Sums:
 
 
 def _correlation(residuals: list[Values], power: float) -> list[tuple[float, int]]:
-    """Return the correlation of residuals 1, 2, ... lines apart, and of how many pairs it is a mean.
-
-    It ends at the first that could be chance.
-    """
+    """Return the correlation of residuals some lines apart, until it may be chance, and counts of pairs."""
     shares: list[tuple[float, int]] = []
     total = sum(r.size for r in residuals)
     for lag in range(1, LARGEST_LAG + 1 if power > 0 else 1):

@@ -22,7 +22,7 @@ from symflex.data.fitting.lines import isolated, wild_lines
 from symflex.data.fitting.observation import Observation, observe
 from symflex.data.fitting.resonances import Complex, Real, Values
 from symflex.data.measurement import MeasuredResponse
-from symflex.errors import DataError, Diagnostic, FitError, Text, UsageError
+from symflex.errors import DataError, Diagnostic, FitError, Text, refused
 from symflex.quantities import parse_unit
 
 STEP = 1e-6  # of the logarithms by which derivatives are taken
@@ -57,20 +57,14 @@ class FittedModeShapes:
 
 
 def mode_shapes(fit: ResonanceFit, measured: Sequence[MeasuredResponse]) -> FittedModeShapes:
-    """Return mass-normalised mode shapes where responses were measured.
-
-    The fit is of the response at the driven point alone, without a base (else SF902). Responses are
-    displacements, velocities or accelerations over the same force, as their units say (else SF602), the
-    fitted one among them (else SF902). SF616 when a modal constant at the driven point is not positive.
-    """
+    """Return mass-normalised mode shapes of all responses, from a fit of the one at the driven point."""
     if len(fit.measured) > 1 or fit.bases[0].path:
-        message = "mode shapes come from a fit of the driven point alone, without a base"
-        raise UsageError(Diagnostic("SF902", message))
+        raise refused("mode shapes come from a fit of the driven point alone, without a base")
     names = tuple(response.name for response in measured)
     at = next((i for i, response in enumerate(measured) if response is fit.measured[0]), None)
     if at is None:
         message = f"the fitted response {fit.measured[0].name} is not among those of the mode shapes"
-        raise UsageError(Diagnostic("SF902", message, None, "give the response itself that was fitted"))
+        raise refused(message, "give the response itself that was fitted")
     motions = [_motion_over_force(response.name, response.unit) for response in measured]
     units = sorted({motion.unit for motion in motions})
     if len(units) > 1:
@@ -144,11 +138,16 @@ def _system(response: MeasuredResponse, motion: _Motion) -> _ResponseSystem:
 
 
 def _refined(systems: Sequence[_ResponseSystem], fit: ResonanceFit) -> tuple[Real, Real]:
-    """Return ln omega_p and ln zeta_p that leave least of all responses, and their covariance.
-
-    SF612 when the search does not end, SF613 when the data do not determine them.
-    """
-    omega, zeta = _shown_poles(fit)
+    """Return ln omega_p and ln zeta_p that leave least of all responses, and their covariance."""
+    modes, errors = fit.resonances, fit.standard_errors()
+    # Resonances in the band that the data determine; of a poor fit, where there are none, all in the band.
+    shown = fit.modes & (errors.zeta_p <= WEAK * modes.zeta_p)
+    if not shown.any():
+        shown = fit.modes
+    if not shown.any():
+        message = "the response at the driven point shows no resonance"
+        raise FitError(Diagnostic("SF616", message, None, "check --driving and --band"))
+    omega, zeta = modes.omega_p[shown], modes.zeta_p[shown]
     start = np.log(np.concatenate([omega, zeta]))
 
     def rest(logarithms: Real) -> Real:
@@ -167,22 +166,6 @@ def _refined(systems: Sequence[_ResponseSystem], fit: ResonanceFit) -> tuple[Rea
     if np.linalg.cond(normal) > SINGULAR:
         raise FitError(Diagnostic("SF613", "the responses do not determine all poles"))
     return result.x, np.linalg.inv(normal) * spread
-
-
-def _shown_poles(fit: ResonanceFit) -> tuple[Real, Real]:
-    """Return the poles of the resonances that have mode shapes: in the band, and determined by the data.
-
-    Where the data determine none, which makes the fit poor, all in the band have shapes. SF616 when there are
-    none.
-    """
-    modes, errors = fit.resonances, fit.standard_errors()
-    shown = fit.modes & (errors.zeta_p <= WEAK * modes.zeta_p)
-    if not shown.any():
-        shown = fit.modes
-    if not shown.any():
-        message = "the response at the driven point shows no resonance"
-        raise FitError(Diagnostic("SF616", message, None, "check --driving and --band"))
-    return modes.omega_p[shown], modes.zeta_p[shown]
 
 
 def _solved(system: _ResponseSystem, logarithms: Real, correlation: float) -> _SolvedShapes:

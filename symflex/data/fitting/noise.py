@@ -25,14 +25,12 @@ STEPS = 60  # multiplicative steps for the shares of the variance; none of them 
 POWERS = (0, 2, 4, -2, -4)  # powers of the frequency that describe the variance of the noise
 LEAST = 1e-9
 """Relative deviation below which no line is taken to be known: a thousandth of it is rounding on the way."""
-MOST_PAIRS = 14
-"""Most pairs of poles of the function without structure, if the number of resonances is open."""
+MOST_PAIRS = 14  # most pairs of poles of the function without structure, if the number of resonances is open
 LINES_PER_PARAMETER = 2.0  # real values that each parameter of that function takes at least
 PATIENCE = 2  # numbers of pairs tried after the best one
 FEWEST = 5  # lines from which the noise is guessed at all
 DECIBEL, DEGREE = np.log(10) / 20, np.pi / 180
-LARGEST = 20.0
-"""Power of an error, over what is expected of it, beyond which it counts as no more than this."""
+LARGEST = 20.0  # power of an error, over what is expected of it, beyond which it counts as no more than this
 
 
 def with_rough_noise(problem: FitProblem) -> FitProblem:
@@ -57,11 +55,7 @@ def with_rough_noise(problem: FitProblem) -> FitProblem:
 
 
 def with_noise(problem: FitProblem, count: int | None, most_lines: int) -> FitProblem:
-    """Return the problem with deviations estimated for the lines that have no coherence.
-
-    So far they are rough. ``count`` resonances are looked for, None when that is open. The poles of the
-    function without structure are found on ``most_lines`` lines of each response, and its values on all.
-    """
+    """Return the problem with deviations estimated, no longer rough, for the lines without coherence."""
     if all(line.coherence is not None and line.parts > 1 for line in problem.lines):
         return problem
     thin = problem.thinned(most_lines)
@@ -127,10 +121,7 @@ def rounding(line: FittedLines, model: Complex) -> Real:
 
 
 def _variance(power: Real, omega: Real, size: Real, rounded: Real | None = None) -> Real:
-    """Return the smooth expectation of the power of each part on every line.
-
-    Each row of ``rounded`` is a part of it, of which at most the whole is there.
-    """
+    """Return the smooth expectation of the power of each part, a row of ``rounded``, on every line."""
     x = omega / np.exp(np.mean(np.log(omega)))
     unit = float(np.mean(size**2))  # whose square may be no number
     power = power / unit

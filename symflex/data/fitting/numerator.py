@@ -57,10 +57,7 @@ def strange(omega_z: Real, zeta_z: Real, real_z: Real, low: float, high: float) 
 
 
 def over_poles(problem: FitProblem, poles: Complex, most: int) -> list[tuple[float, Resonances]]:
-    """Return at most so many functions with these poles that describe the lines best, with their BIC.
-
-    Poles lie in the upper half-plane; the problem says which powers of s are tried, and delays to begin with.
-    """
+    """Return at most so many functions with these poles that describe the lines best, with their BIC."""
     choices = [_numerators(problem, r, poles, most) for r in range(len(problem.lines))]
     if not all(choices):
         return []

@@ -38,8 +38,7 @@ Result = TypeVar("Result")
 
 CRITERIA = ("bic", "aicc")
 MOST_MODES = 12  # beyond, ask for a number: each one tried costs a fit from up to three kinds of starts
-EXTRA = 5
-"""Poles beyond those of the resonances that are asked for: modes outside the band, and real ones."""
+EXTRA = 5  # poles beyond those of the resonances that are asked for: modes outside the band, and real ones
 PATIENCE, MORE_PATIENCE = 1, 3
 """Numbers of pairs tried after the best: where the noise is nearly reached, and where it is far."""
 NOISE_SHARE, TRIED_SHARE, THOROUGH_SHARE, LAST_SHARE, PHASE_SHARE = 0.15, 0.6, 0.7, 0.85, 0.92
@@ -49,8 +48,7 @@ THOROUGH, QUICK = (STEPS, TOLERANCE), (25, ROUGH)
 """Steps and tolerance of a whole search, and of one that is enough to compare numbers of poles."""
 EXPLAINED = 1.15
 """Sum of squares per degree of freedom up to which noise explains what is left; 1 is expected."""
-WEAK = 0.5
-"""Standard error of ln zeta beyond which fewer resonances are preferred, unless that is far worse."""
+WEAK = 0.5  # standard error of ln zeta beyond which fewer resonances are preferred, unless that is far worse
 FAR_BETTER = 4.0
 """Ratio of sums of squares at which a failed fit is said rather than replaced, and a weak one kept."""
 FAR_OFF = 100.0  # sum of squares per degree of freedom from which poles are missing, whatever the start
@@ -165,11 +163,7 @@ STARTS: Mapping[str, Callable[[FitProblem, int], Iterator[Resonances]]] = {
 def best_of_starts(
     problem: FitProblem, order: int, kind: str = "auto", *, is_quick: bool = False
 ) -> Candidate | None:
-    """Return the best fit with so many poles; None when no start has as many.
-
-    ``kind`` is a key of :data:`STARTS`, or ``auto``. A quick one takes few steps, for comparing numbers of
-    poles.
-    """
+    """Return the best fit with so many poles; None when no start has as many."""
     kinds = [kind]
     if kind == "auto":
         # On a known base the procedure of the paper is tried first; without, the powers of s are open.
@@ -213,17 +207,17 @@ def best_of_starts(
 def chosen_order(
     problem: FitProblem, thin: FitProblem, given: FitOptions, stages: Stages
 ) -> tuple[Candidate, tuple[Score, ...], tuple[str, ...]]:
-    """Return the fit whose number of poles the criterion prefers, what it says of all, and what is wrong.
-
-    ``thin`` is the problem on the lines on which numbers are compared. With ``modes`` given, so many
-    resonances in the band are wanted; the criterion chooses the number of residual terms.
-    """
+    """Return the fit whose number of poles the criterion prefers, what it says of all, and what is wrong."""
     modes, criterion = given.modes, given.criterion
     tried: list[Candidate] = []
     stages.within(TRIED_SHARE, lambda: _try(thin, given, tried), lambda: None)
     if not tried:
         with stages.untimed.entered():
-            tried.append(_nothing(thin))
+            none = np.zeros(0, np.complex128)
+            empty = np.zeros((len(thin.lines), 0))
+            plain = Resonances(none.real, none.real, empty, empty, np.ones(len(thin.lines)))
+            refined = refine(thin, plain, *QUICK)
+            tried.append(Candidate(0, "none", plain, refined, _failure(thin, refined)))
     tried = sorted(tried, key=lambda one: one.order)
     reasons: list[str] = []
     # What is correlated because a resonance lacks tells nothing of the noise.
@@ -259,10 +253,7 @@ def chosen_order(
 
 
 def _try(thin: FitProblem, given: FitOptions, tried: list[Candidate]) -> None:
-    """Add quick fits with numbers of poles until more explain nothing.
-
-    Even numbers first, then those beside the best of them.
-    """
+    """Add quick fits with even numbers of poles until more explain nothing, and those beside the best."""
     modes = given.modes
     first, last = (0, 2 * MOST_MODES) if modes is None else (2 * modes, 2 * modes + EXTRA)
 
@@ -328,18 +319,6 @@ def _is_weak(problem: FitProblem, refined: Refined) -> bool:
     return bool(np.any(dampings > WEAK) or not np.isfinite(gains).all())
 
 
-def _is_rivalled(problem: FitProblem, best: Candidate, tried: Sequence[Candidate]) -> bool:
-    """Return whether another power of s, with as many poles or fewer, describes the lines as well.
-
-    More poles with another power are the same function where one of them is at the end of the band.
-    """
-    near = [one for one in tried if one.order <= best.order] + [best]
-    rivals = [rival for one in near for rival in (one.refined, one.rival) if rival is not None]
-    slope, limit = _slope_in_band(problem, best.refined.resonances), _merit(problem, best.refined) + CLEAR
-    others = [one for one in rivals if np.any(_slope_in_band(problem, one.resonances) != slope)]
-    return any(_merit(problem, rival) < limit for rival in others)
-
-
 def _slope_in_band(problem: FitProblem, modes: Resonances) -> Whole:
     """Return the powers of s that the band shows: poles and zeros far below it are such powers."""
     low = problem.band[0] / FAR_OUTSIDE
@@ -358,7 +337,13 @@ def _continued(
 ) -> Candidate:
     """Return where a quick fit leads with all steps, on all lines and with the window."""
     best = stages.within(THOROUGH_SHARE, lambda: _thorough(thin, quick, kind), lambda: quick)
-    best = replace(best, is_rivalled=_is_rivalled(thin, best, tried))
+    # Another power of s, with as many poles or fewer, may describe the lines as well; more poles with another
+    # power are the same function where one of them is at the end of the band.
+    near = [one for one in tried if one.order <= best.order] + [best]
+    rivals = [rival for one in near for rival in (one.refined, one.rival) if rival is not None]
+    slope, limit = _slope_in_band(thin, best.refined.resonances), _merit(thin, best.refined) + CLEAR
+    others = [one for one in rivals if np.any(_slope_in_band(thin, one.resonances) != slope)]
+    best = replace(best, is_rivalled=any(_merit(thin, rival) < limit for rival in others))
     if len(thin.slopes) > 1 and thin.band[1] <= NARROW_BAND * thin.band[0]:
         best = stages.within(THOROUGH_SHARE, lambda: _with_least_power(thin, best), lambda: best)
     if thin.count == problem.count and all(line.observation.matrix is None for line in problem.lines):
@@ -394,15 +379,6 @@ def too_few(problem: FitProblem, count: int, reached: int) -> str:
     over = " over the base" if problem.has_base else ""
     band = f"between {low:.4g} and {high:.4g} Hz"
     return f"{count} resonances were requested, and the best fit has {reached}{over} {band}"
-
-
-def _nothing(problem: FitProblem) -> Candidate:
-    """Return the function without poles that no start led to: the base, or a gain."""
-    none = np.zeros(0, np.complex128)
-    empty = np.zeros((len(problem.lines), 0))
-    plain = Resonances(none.real, none.real, empty, empty, np.ones(len(problem.lines)))
-    refined = refine(problem, plain, *QUICK)
-    return Candidate(0, "none", plain, refined, _failure(problem, refined))
 
 
 def _negligible(problem: FitProblem) -> float:
@@ -500,10 +476,7 @@ def _without_far_poles(problem: FitProblem, best: Candidate) -> Candidate:
 
 
 def _simplest(problem: FitProblem, best: Candidate) -> Candidate:
-    """Return the fit to computed lines without poles and zeros that leave no more than rounding does.
-
-    They cancel, or lie where the band shows a gain or a power of s.
-    """
+    """Return the fit to computed lines without poles and zeros that leave no more than rounding does."""
     modes, limit = best.refined.resonances, FAR_BETTER * (best.refined.reduced + NEGLIGIBLE)
     pairs = modes.omega_p * (-modes.zeta_p + 1j * np.sqrt(np.maximum(1 - modes.zeta_p**2, 0)))
     poles = np.append(pairs[modes.zeta_p < 1], -np.array(modes.real_corners(), np.complex128))

@@ -153,11 +153,7 @@ def fit_problem(
     has_base: bool = True,
     slopes: tuple[int, ...] = (0,),
 ) -> FitProblem:
-    """Return the problem of fitting resonances to responses, given the known factor of each.
-
-    Known factors are functions of angular frequencies [rad/s], a model's or powers of s; ``slopes`` are the
-    powers of s that each response may have.
-    """
+    """Return the problem of fitting resonances to responses, given the known factor of each [rad/s]."""
     lines = []
     for response, base in zip(measured, bases, strict=True):
         observation = observe(response)

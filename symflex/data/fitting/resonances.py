@@ -120,17 +120,11 @@ class Resonances:
         return np.asarray(zeros > self.order + (self.lag > 0))
 
     def in_band(self, low: float, high: float) -> Mask:
-        """Return which pole pairs are resonances in a band [rad/s], shape (n,).
-
-        The others are residual terms: they stand for modes outside the band, or have no peak.
-        """
+        """Return which pole pairs are resonances in a band [rad/s]; the others are residual terms."""
         return (self.zeta_p < NO_PEAK) & (self.omega_p >= low) & (self.omega_p <= high)
 
     def ordered(self) -> Resonances:
-        """Return the same product with poles, and zeros of each response, in ascending order.
-
-        A product does not know which zero belongs to which pole; in this order it has one spelling.
-        """
+        """Return the same product with poles and zeros in ascending order, in which it has one spelling."""
         poles = np.argsort(self.omega_p, kind="stable")
         zeros = np.argsort(np.abs(self.omega_z), axis=1, kind="stable")
         omega_z, zeta_z = (np.take_along_axis(own, zeros, 1) for own in (self.omega_z, self.zeta_z))

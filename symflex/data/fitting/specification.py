@@ -22,7 +22,7 @@ import numpy as np
 
 from symflex.data.fitting.fit import ResonanceFit
 from symflex.data.fitting.resonances import Resonances
-from symflex.errors import Diagnostic, FitError, Source, SymflexError, UsageError
+from symflex.errors import Diagnostic, FitError, Source, SymflexError, refused
 from symflex.model import load_with
 from symflex.model.scope import RESERVED
 from symflex.model.spec import read
@@ -37,19 +37,13 @@ COPIED = ("parameters", "definitions", "elements", "signals", "blocks", "fields"
 
 
 def fit_specification(fit: ResonanceFit, folder: str | Path, loop: str | None = None) -> str:
-    """Return the specification of a fit that will stand in a folder, with a loop whose gain has this name.
-
-    It has been read, resolved and assembled as ``symflex check`` does. A base that a ``model`` block can
-    stand for is referred to; any other, and one outside the folder and its subfolders, is copied. SF617
-    where neither way gives a specification that is accepted.
-    """
+    """Return the specification of a fit that will stand in a folder, with a loop whose gain has this name."""
     bases = tuple(dict.fromkeys(Path(base.path) for base in fit.bases if base.path))
     allowed = tuple(place for base in fit.bases for place in base.folders)
     taken = {name for base in fit.bases for name in base.taken}
     ways: list[Mapping[str, object] | None] = [None]
     if loop is not None and (not _is_name(loop) or loop in {*RESERVED, *taken}):
-        message = f"'{loop[:64]}' is not a valid name for the gain of a loop"
-        raise UsageError(Diagnostic("SF902", message, None, "say K"))
+        raise refused(f"'{loop[:64]}' is not a valid name for the gain of a loop", "say K")
     if len(bases) == 1 and loop is None:  # a copied base has inputs of its own, which no signal drives
         source = read(bases[0])
         whole = tomllib.loads(source.text, parse_float=Decimal)
@@ -65,11 +59,11 @@ def fit_specification(fit: ResonanceFit, folder: str | Path, loop: str | None = 
                 model = load_with(Source(str(Path(folder) / "fitted.toml"), text), {}, allow_outside=outside)
                 check_solvable(assemble(model))
             except SymflexError as error:
-                refused = error.diagnostics[0]
+                why = error.diagnostics[0]
             else:
                 return text
-    message = f"the fit cannot be written as a specification: {refused.message}"
-    raise FitError(Diagnostic("SF617", message, None, refused.hint))
+    message = f"the fit cannot be written as a specification: {why.message}"
+    raise FitError(Diagnostic("SF617", message, None, why.hint))
 
 
 def _written(

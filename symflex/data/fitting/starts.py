@@ -46,8 +46,7 @@ UNMOVED = 1e-4
 """Relative change of the poles at which vector fitting has settled: least squares go on from there."""
 SETTLED = 1e-6  # the least of its free constant
 SPARE = 2  # poles, or pairs of them, more than are looked for, which noise or a delay may take up
-GENEROUS = 10
-"""Steps of a vector fit from which only a level of noise, or a first choice of poles, is taken."""
+GENEROUS = 10  # steps of a vector fit from which only a level of noise, or a first choice of poles, is taken
 REPHASED = 6  # rounds in which magnitudes without a phase take that of the function fitted to them
 LARGEST_START = 0.3  # damping ratio beyond which a pole counts less and less as a resonance
 FREE_POWERS = (-2, -1, 0, 1, 2)
@@ -61,8 +60,7 @@ FEW_POWERS = (0, 1)
 # Of delays.
 PER_TURN = 5  # delays tried per turn of the phase at the highest line
 MOST_TURNS = 40.0
-LEAST_TURNS = 2.0
-"""Of the phase at the highest line: how far the delays tried reach, at most and at least."""
+LEAST_TURNS = 2.0  # of the phase at the highest line: how far the delays tried reach, at most and at least
 MOST_LINES = 300  # lines on which delays are compared
 
 
@@ -79,10 +77,7 @@ def find_modes(problem: FitProblem) -> list[int]:
 
 
 def start_from_peaks(problem: FitProblem, count: int) -> Resonances | None:
-    """Return a start with so many resonances, None when the magnitude has fewer peaks.
-
-    Several responses share the peaks of the first; each has its own troughs.
-    """
+    """Return a start with so many resonances, None when the first response has fewer peaks."""
     chosen = find_modes(problem)[:count]
     while len(chosen) < count:
         # A shoulder becomes a peak when the modes found so far are divided out.
@@ -223,11 +218,7 @@ def poles_from_aaa(problem: FitProblem, count: int) -> list[Complex]:
 def generous_fit(
     problem: FitProblem, pairs: int, poles: Complex | None = None
 ) -> tuple[list[Complex], int, Complex]:
-    """Return what a function without structure makes of the lines, its number of parameters, its poles.
-
-    Its poles are shared, and found unless they are given; each response has residues and powers of s of its
-    own.
-    """
+    """Return what a function without structure makes of the lines, its number of parameters, its poles."""
     is_given = poles is not None
     poles = spread(*problem.band, 2 * pairs) if poles is None else poles
     for _ in range(REPHASED if any(line.parts == 1 for line in problem.lines) else 1):

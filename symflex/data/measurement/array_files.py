@@ -75,11 +75,7 @@ class ByteReader:
         self.place = min(-(-self.place // size) * size, len(self.data))
 
     def numbers(self, kind: str, shape: Sequence[int], order: Literal["C", "F"] = "C") -> npt.NDArray[Any]:
-        """Return an array of numbers of one kind, such as ``f8``, in the bytes' own order.
-
-        ValueError when there are fewer bytes, or it is not a shape; nothing is allocated for what is not
-        there.
-        """
+        """Return an array of one kind, such as ``f8``; ValueError for fewer bytes, or what is no shape."""
         is_shape = len(shape) <= DIMENSIONS_LIMIT and all(size >= 0 for size in shape)
         require(is_shape, f"an array has the shape {' x '.join(map(str, shape))}"[:SHOWN])
         dtype = np.dtype(self.order + kind)
@@ -115,11 +111,7 @@ _DIRECTORY_LIMIT: Final = 2**20  # bytes of an archive's list of members: some t
 
 
 def read_archive(data: bytes, limit: int, members: int) -> Arrays:
-    """Return the arrays of an .npz by name.
-
-    ValueError with the reason: no archive, encrypted, cut short, arrays of objects. OverflowError when the
-    arrays take more than ``limit`` bytes together, or are more than ``members``.
-    """
+    """Return the arrays of an .npz by name; OverflowError beyond ``limit`` bytes or ``members`` arrays."""
     # Refuse an archive with a list of members that is large itself: each is an object in memory
     end = data.rfind(_END, max(len(data) - _END_SIZE - _COMMENT, 0))
     require(end >= 0 and len(data) - end >= _END_SIZE, "it is not an archive, or is cut short")
@@ -151,10 +143,7 @@ def _member(file: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
 
 
 def read_array(name: str, content: bytes) -> Arrays:
-    """Return the array of an .npy file under a name, or the fields of a structured one under their own.
-
-    ValueError with the reason when it is none of numbers or texts.
-    """
+    """Return the array of an .npy file under a name, or the fields of a structured one under their own."""
     reader = ByteReader(content)
     require(bytes(reader.take(len(_MAGIC))) == _MAGIC, "a member is not an array")
     major = reader.integer("u1")
@@ -186,12 +175,7 @@ _OFFSETS: Final = {1: "i4", 2: "i8"}
 
 
 def read_netcdf(data: bytes, items: int) -> tuple[Attributes, dict[str, Variable]]:
-    r"""Return global attributes, and by name of every variable its dimensions, values and attributes.
-
-    ValueError with the reason: no such file, cut short, an unlimited dimension that is not empty, or
-    variables that stand in the same place. OverflowError for more than ``items`` dimensions, variables or
-    attributes.
-    """
+    """Return global attributes, and by name of every variable its dimensions, values and attributes."""
     reader = ByteReader(data, ">")
     require(data[:3] == b"CDF" and data[3:4] in (b"\x01", b"\x02"), "it is neither netCDF 3 nor .npz")
     reader.take(3)

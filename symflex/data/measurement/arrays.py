@@ -49,7 +49,7 @@ from symflex.data.measurement.measured_response import (
     window_of,
 )
 from symflex.data.measurement.text_table import MAX_CELLS, number
-from symflex.errors import DataError, Diagnostic, UsageError
+from symflex.errors import DataError, Diagnostic, refused
 
 Array = npt.NDArray[Any]
 Arrays = Mapping[str, Array]
@@ -102,11 +102,7 @@ def _octave_variables(data: bytes) -> Arrays:
 
 
 def _json_variables(data: bytes) -> Arrays:
-    """Return the arrays of an object, ``run.H``, ``runs(2).H``; a list of objects is a table of their keys.
-
-    Text such as ``1+2j`` is a complex number, as is a pair of numbers where values are due. ValueError for no
-    JSON, or one nested too deeply; OverflowError for too many values.
-    """
+    """Return the arrays of an object, ``run.H``, ``runs(2).H``; a list of objects is a table of keys."""
     if data.count(b",") + 2 * data.count(b"[") + 4 * data.count(b"{") > MAX_CELLS:
         raise OverflowError
     found: dict[str, Array] = {}
@@ -123,7 +119,12 @@ def _json_variables(data: bytes) -> Arrays:
             else:
                 value = {key: [x.get(key) for x in rows] for key in keys}
         if not isinstance(value, dict):
-            array = _json_array(value)
+            cells = [np.nan if x is None else x for x in value] if isinstance(value, list) else []
+            if texts := [len(x) for x in cells if isinstance(x, str)]:  # each takes the room of the longest
+                require(len(cells) * max(texts) <= MAX_BYTES // 4, "it contains a list of long texts")
+                numbers = [number(x) if isinstance(x, str) else x for x in cells]
+                cells = cells if None in numbers else numbers
+            array = np.array(cells if isinstance(value, list) else value)
             are_pairs = array.shape[1:] == (2,) and array.dtype.kind in "fi"
             are_values = are_pairs and _meaning(path.rpartition(".")[2].lower()).kind == "complex"
             found[path or "array"] = array.astype(float).view(complex)[:, 0] if are_values else array
@@ -136,15 +137,6 @@ def _json_variables(data: bytes) -> Arrays:
     except RecursionError:
         raise ValueError("it is nested too deeply") from None
     return {key: array for key, array in found.items() if array.dtype.kind in "fciubU"}
-
-
-def _json_array(value: object) -> Array:
-    cells = [np.nan if x is None else x for x in value] if isinstance(value, list) else []
-    if texts := [len(x) for x in cells if isinstance(x, str)]:  # each takes the room of the longest
-        require(len(cells) * max(texts) <= MAX_BYTES // 4, "it contains a list of long texts")
-        numbers = [number(x) if isinstance(x, str) else x for x in cells]
-        cells = cells if None in numbers else numbers
-    return np.array(cells if isinstance(value, list) else value)
 
 
 _FILES: Final[Mapping[str, tuple[str, Callable[[bytes], Arrays]]]] = {
@@ -163,10 +155,7 @@ _FILES: Final[Mapping[str, tuple[str, Callable[[bytes], Arrays]]]] = {
 
 
 def arrays_in(name: str, data: bytes, suffix: str) -> Arrays:
-    """Return the arrays of a .npz, .npy or .mat file; nothing in it is unpickled.
-
-    SF601 no such file, a MATLAB file of version 7.3, or one of objects alone; SF607 too large.
-    """
+    """Return the arrays of a .npz, .npy or .mat file; nothing in it is unpickled."""
     kind, read = _FILES["octave" if data.startswith(OCTAVE) else suffix]
     try:
         arrays = read(data)
@@ -221,9 +210,7 @@ def responses_of(arrays: Arrays, name: str, stem: str, asked: str = "") -> tuple
         return _from_matrix(*matrix, name, stem, asked)
     if asked and "=" not in asked:
         hint = f"such as --columns f=NAME,h=NAME; it has {listed_names(list(arrays))}"
-        raise UsageError(
-            Diagnostic("SF902", f"'{name}' contains several arrays: --columns names them", None, hint)
-        )
+        raise refused(f"'{name}' contains several arrays: --columns names them", hint)
     scopes: dict[str, dict[str, Array]] = {}
     for key, array in arrays.items():
         scope, _, last = key.rpartition(".")
@@ -285,7 +272,7 @@ def _renamed(arrays: Arrays, asked: str, name: str) -> dict[str, Array]:
             message = f"'{name}': --columns {part[:60]}: {what}"
             names = listed_names(list(arrays))
             hint = f"the names left of '=' are {', '.join(sorted(kinds))}; those right of it are {names}"
-            raise UsageError(Diagnostic("SF902", message, None, hint))
+            raise refused(message, hint)
         renamed[words.get(kind, kind)] = arrays[key]
     return renamed
 

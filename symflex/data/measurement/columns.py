@@ -23,7 +23,7 @@ import numpy.typing as npt
 
 from symflex.data.measurement.measured_response import MAX_ERRORS, MAX_RESPONSES, are_few, unit_of
 from symflex.data.measurement.text_table import bare
-from symflex.errors import DataError, Diagnostic, Span, UsageError, nearest
+from symflex.errors import DataError, Diagnostic, Span, nearest, refused
 
 Choice = TypeVar("Choice", str, float)
 Real = npt.NDArray[np.float64]
@@ -111,10 +111,8 @@ UNDECIDED: Final = 1.5
 """How much less like a causal function the other reading has to be, as a natural logarithm."""
 WRAPPED: Final = 2 * np.pi * 1.001
 """The largest range of phases that may have been wrapped, and not written as they go on."""
-FITS: Final = 1.0
-"""Beyond it numbers are like no causal function: the ratio of energies is beyond a factor e."""
-DECADE: Final = 10.0
-"""Ratio of the largest and smallest of positive numbers up to which they may well be dB."""
+FITS: Final = 1.0  # beyond it numbers are like no causal function: the ratio of energies is beyond a factor e
+DECADE: Final = 10.0  # ratio of the largest and smallest of positive numbers up to which they may well be dB
 LEAST_LEVELS: Final = 1.0  # range [dB] below which positive numbers are rather ratios
 SAME_SIZE: Final = 0.02
 MOST_ALIKE: Final = 0.9
@@ -347,13 +345,12 @@ def columns_asked(asked: str, width: int, names: Sequence[str] = ()) -> list[Col
     if len(words) > width:
         called = [name[:30] for name in names if name]
         listed = f": {', '.join(called[:LISTED])}{', ...' if len(called) > LISTED else ''}" if called else ""
-        message = f"--columns has {len(words)} words, and there are {width} columns{listed}"
-        raise UsageError(Diagnostic("SF902", message, None, hint))
+        raise refused(f"--columns has {len(words)} words, and there are {width} columns{listed}", hint)
     columns = []
     for word in words:
         meaning = ColumnMeaning("complex") if word in ("h", "H", "complex") else meaning_of(word)
         if not meaning.kind and word not in ("", "-"):
-            raise UsageError(Diagnostic("SF902", f"--columns: unknown column '{word[:40]}'", None, hint))
+            raise refused(f"--columns: unknown column '{word[:40]}'", hint)
         if meaning.kind == "frequency" and meaning.factor is None and not meaning.unit:
             meaning = replace(meaning, factor=1.0)
         if meaning.kind == "magnitude" and meaning.scale == "unknown":
@@ -516,10 +513,7 @@ def _with_frequency(
 
 
 def _over_input(columns: list[DataColumn], guesses: list[str]) -> list[DataColumn]:
-    """Return columns with the ratio of two sizes, of what comes out and what goes in, instead of the two.
-
-    Where another column is the magnitude already, or the two have phases of their own, there is no ratio.
-    """
+    """Return columns with what comes out over what goes in, where both are sizes without phases."""
     sizes = [c for c in columns if c.meaning.kind in ("magnitude", "power")]
     ends = {c: match[1].lower() for c in sizes if (match := _END.fullmatch(c.meaning.label))}
     turned = [re.split(r"\s*[-/]\s*", c.meaning.label) for c in columns if c.meaning.kind == "phase"]
@@ -936,10 +930,7 @@ _READINGS: Final = (("re", "im"), *product(("mag_db", "mag"), ("phase_deg", "pha
 
 @np.errstate(all="ignore")  # numbers that are not finite are reported elsewhere
 def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, ...] = ()) -> str:
-    """Return the hint with the option that says what columns are, or a pair, the likeliest reading first.
-
-    Nothing is offered that a name contradicts, or the numbers; readings that fit far worse are left out.
-    """
+    """Return the hint with the option that says what columns are, or a pair, the likeliest reading first."""
     is_indexed = len(columns) > 2 and counts(columns[0].numbers)  # noqa: PLR2004
     is_indexed = is_indexed and bool(np.all(np.diff(columns[1].numbers.real) > 0))
     axis = next((i for i, c in enumerate(columns) if c.meaning.kind == "frequency"), int(is_indexed))

@@ -72,11 +72,7 @@ NEAR: Final = 60  # lines above the numbers among which the names of columns are
 
 
 def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[MeasuredResponse, ...]:
-    """Read responses from text in columns; a single one is called ``stem`` when the file gives no name.
-
-    ``asked`` says what the columns are, as ``--columns`` does. SF601 no text; SF602 columns missing, unknown
-    or in an unknown unit; SF603, SF604, SF605, SF607 values; SF902 for columns asked that are not there.
-    """
+    """Read responses from text in columns; a single one is called ``stem`` when the file gives no name."""
     table = TextTable.of(name, data)
     turned = _turned(table) or _listed(table) or _qucs(table) or _stepped(table) or _citi(table)
     if turned is not None:
@@ -200,10 +196,7 @@ def with_axis(name: str, data: bytes, first: float, step: float) -> bytes:
 
 
 def _turned(table: TextTable) -> _Rewritten | None:
-    """Return the text with columns of a table whose lines are many numbers, after a name if more than a few.
-
-    None if it is no such table.
-    """
+    """Return the text with columns where a table has few lines of many numbers; None if it has not."""
     places = [i for i, line in enumerate(table.lines) if line.strip()][: MOST_TURNED + 1]
     rows = [cut(table.lines[i], table.delimiter) for i in places]
     if not 1 < len(rows) <= MOST_TURNED or len({*map(len, rows)}) > 1 or len(rows[0]) < 2 * len(rows):

@@ -31,7 +31,7 @@ import numpy.typing as npt
 
 from symflex.data.measurement.columns import minimum_phase
 from symflex.data.measurement.measured_response import MeasuredResponse, window_of
-from symflex.errors import DataError, Diagnostic, UsageError
+from symflex.errors import DataError, Diagnostic, refused
 
 if TYPE_CHECKING:
     from symflex.data.measurement.record import TimeRecord
@@ -59,10 +59,8 @@ BELOW_NYQUIST: Final = {"step": 0.1, "impact": 0.25, "decay": 0.25}
 SWEPT: Final = 0.4
 """Share of a line's power in one of :data:`SEGMENTS` from which the input is a sweep; noise has a fifth."""
 OF_STEP: Final = "a step"
-HELD: Final = 0.5
-"""Share of samples equal to those before them from which an input is held between samples."""
-STOPPED: Final = 0.01
-"""Share of a record in whose last level the input is switched off, which is left out."""
+HELD: Final = 0.5  # share of samples equal to those before them from which an input is held between samples
+STOPPED: Final = 0.01  # share of a record in whose last level the input is switched off, which is left out
 DIES_AWAY: Final = 0.3  # rms of the second half of a free decay over that of the first half, at most
 ENDS: Final = 0.05  # share of a record by whose samples its ends are judged
 
@@ -78,7 +76,7 @@ class Estimate:
     def __post_init__(self) -> None:
         if self.window not in ("none", "exponential") and not window_of(self.window):
             message = f"the window '{self.window[:40]}' is neither hann nor none nor exponential:SECONDS"
-            raise UsageError(Diagnostic("SF902", message, None, "such as --window exponential:0.5"))
+            raise refused(message, "such as --window exponential:0.5")
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,10 +145,7 @@ class _Channel:
 
 
 def responses_of(record: TimeRecord, how: Estimate) -> tuple[MeasuredResponse, ...]:
-    """Return the estimated response of every output of a record.
-
-    SF605 when no line is left.
-    """
+    """Return the estimated response of every output of a record; SF605 when no line is left."""
     made = []
     for name, values in record.outputs:
         averages: float | None = None

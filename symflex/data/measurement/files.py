@@ -31,7 +31,7 @@ from symflex.data.measurement.universal_file import (
     RESPONSE,
     read_universal_file,
 )
-from symflex.errors import DataError, Diagnostic, UsageError
+from symflex.errors import DataError, Diagnostic, refused
 from symflex.errors.optional import installed
 from symflex.model.spec.read import read_file
 
@@ -210,10 +210,9 @@ def prepared(
     """
     Estimate(window=window or "none")
     if averages is not None and not 1 <= averages <= MOST_AVERAGES:
-        message = f"the number of averages is {averages:g}; it must lie between 1 and {MOST_AVERAGES:g}"
-        raise UsageError(Diagnostic("SF902", message))
+        raise refused(f"the number of averages is {averages:g}; it must lie between 1 and {MOST_AVERAGES:g}")
     if band is not None and not 0 <= band[0] < band[1]:
-        raise UsageError(Diagnostic("SF902", "give a band as two frequencies in Hz, the lower one first"))
+        raise refused("give a band as two frequencies in Hz, the lower one first")
     prepared_ones = []
     for response in _averaged(responses):
         chosen = response
@@ -221,7 +220,7 @@ def prepared(
             chosen = replace(chosen, averages=averages)
         if window == "exponential" and not chosen.is_record:
             hint = "say its time constant: --window exponential:SECONDS"
-            raise UsageError(Diagnostic("SF902", f"'{response.name}' is not a record in time", None, hint))
+            raise refused(f"'{response.name}' is not a record in time", hint)
         if window is not None and not chosen.is_record:
             chosen = replace(chosen, window=window_of(window))
         if chosen.is_record and chosen.coherence is not None and not chosen.averages:
@@ -314,12 +313,8 @@ WRITERS: Mapping[str, Callable[[MeasuredResponse], bytes]] = {
 
 
 def measurement_bytes(response: MeasuredResponse, path: str | Path) -> bytes:
-    """Return the content of a file of the format its name asks for.
-
-    SF902 for another ending, or when a library for the format is not installed.
-    """
+    """Return the content of a file of the format its name asks for; SF902 for another ending."""
     suffix = Path(path).suffix.lower()
     if suffix not in WRITERS:
-        message = f"'{path}': the name of a measurement must end in {', '.join(WRITERS)}"
-        raise UsageError(Diagnostic("SF902", message))
+        raise refused(f"'{path}': the name of a measurement must end in {', '.join(WRITERS)}")
     return WRITERS[suffix](response)

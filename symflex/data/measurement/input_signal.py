@@ -57,8 +57,7 @@ BESIDE: Final = 3
 COMMENTS: Final = ("#", "%", "!", "//")
 HINT: Final = "two columns: time_s, and the value"
 LARGEST_EXPONENT: Final = 400  # of a decimal: far beyond what doubles hold
-MOST_DIGITS: Final = 10**15
-"""Denominator of a time beyond which its last digits are those of a binary number."""
+MOST_DIGITS: Final = 10**15  # denominator of a time beyond which its last digits are those of a binary number
 EVEN: Final = 1e-6  # share of their distance by which times of an array may be off even ones
 
 
@@ -72,15 +71,7 @@ class InputSignal:
 
 
 def read_signal(path: str | Path) -> InputSignal:
-    """Read an input signal.
-
-    Raises
-    ------
-    UsageError
-        SF901 when there is no such regular file.
-    DataError
-        SF601, SF602, SF603, SF604, SF605, SF607: what is wrong with it, with line and column.
-    """
+    """Read an input signal; SF601 to SF605, SF607 say what is wrong with it, with line and column."""
     name = os.fspath(path)
     data = read_file(name, MAX_BYTES)
     if len(data) > MAX_BYTES:

@@ -36,10 +36,7 @@ _CALL: Final = (
 
 
 def read_isolated(library: str, data: bytes, limit: int) -> Arrays:
-    """Return the arrays that a library finds in a file; a text is the array called ``""``.
-
-    SF914 when it is not installed; ValueError with the reason, OverflowError beyond a limit, as readers do.
-    """
+    """Return the arrays that a library finds in a file; a text is the array without a name."""
     installed(library)
     command = [sys.executable, "-c", _CALL.format(sys.path, library, limit)]
     try:

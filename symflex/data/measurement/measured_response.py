@@ -179,12 +179,7 @@ SMALLEST, LARGEST = 1e-100, 1e100
 def checked_response(
     response: MeasuredResponse, file: str, span_of: Callable[[int, str], Span | None]
 ) -> MeasuredResponse:
-    """Return a response whose lines are in order, at positive frequencies, and hold a number each.
-
-    Lines are reversed or sorted; what was left out is said. ``span_of`` says where a line's ``frequency``,
-    ``value`` or ``coherence`` stands. SF603 values that are not numbers, or out of range; SF604 frequencies
-    that repeat, or go through the band more than once; SF605 too few lines; SF607 too many.
-    """
+    """Return a response whose lines are in order, at positive frequencies, and hold a number each."""
     if response.frequency_hz.size > MAX_LINES:
         raise DataError(Diagnostic("SF607", f"'{file}' has more than {MAX_LINES} lines"))
     lines, said = _ordered(response, span_of)

@@ -29,7 +29,7 @@ from symflex.data.measurement.columns import meaning_of
 from symflex.data.measurement.input_signal import ARRAYS, SECONDS, TIME, InputSignal, named_time
 from symflex.data.measurement.measured_response import MAX_LINES, are_few, listed_names
 from symflex.data.measurement.text_table import COMMENTS, TextTable, bare, cut, number
-from symflex.errors import DataError, Diagnostic, UsageError
+from symflex.errors import DataError, Diagnostic, refused
 
 Real = npt.NDArray[np.float64]
 
@@ -92,13 +92,10 @@ class TimeRecord:
     guesses: tuple[str, ...] = ()  # what the file does not say
 
     def driven(self, output: str) -> tuple[InputSignal, tuple[str, Real]]:
-        """Return the input, and the output of this name or else the first, as of a model that starts at rest.
-
-        Both are counted from where they begin; the input only if it rests there. SF902 without an input.
-        """
+        """Return the input and an output, by name or the first, both from where they begin; SF902 without."""
         if self.input is None:
             message = f"'{self.name}' has no input that could drive a model"
-            raise UsageError(Diagnostic("SF902", message, None, "--columns t,u,y names the columns"))
+            raise refused(message, "--columns t,u,y names the columns")
         _, u = self.input
         u = u - u[0] if np.all(u[:BEGIN] == u[0]) else u
         name, y = next((one for one in self.outputs if one[0] == output), self.outputs[0])
@@ -336,7 +333,7 @@ def _asked(
     words = [word.lower() for word in words]
     if len(words) > len(channels):
         message = f"--columns has {len(words)} words, and there are {len(channels)} columns"
-        raise UsageError(Diagnostic("SF902", message, None, "such as t,u,y or t_ms,-,u,y"))
+        raise refused(message, "such as t,u,y or t_ms,-,u,y")
     at = next((i for i, word in enumerate(words) if word.partition("_")[0] in ("t", "time")), None)
     step, kept, times = number(interval[3:]), False, np.empty(0)
     if not interval and at is not None:
@@ -344,15 +341,16 @@ def _asked(
         times = _seconds(times, guesses) if words[at] == "t" else times
         step, kept = _even(times, *place, guesses)
     if not (isinstance(step, float) and 0 < step < np.inf):
-        message = f"--columns: '{interval[:40]}' is not a sampling time in seconds"
-        raise UsageError(Diagnostic("SF902", message, None, "such as u,y,dt=0.01"))
+        raise refused(
+            f"--columns: '{interval[:40]}' is not a sampling time in seconds", "such as u,y,dt=0.01"
+        )
     made: dict[str, list[tuple[str, Real]]] = {"u": [], "y": []}
     for i, word in enumerate(words):
         if word in ("-", "") or i == at:
             continue
         if word.rstrip("0123456789") not in made:
             message = f"--columns: unknown column '{word[:40]}' of a record in time"
-            raise UsageError(Diagnostic("SF902", message, None, "t (or t_ms, t_us), u, y, -, dt=0.01"))
+            raise refused(message, "t (or t_ms, t_us), u, y, -, dt=0.01")
         values = _resampled(times, channels[i][1], step) if kept else channels[i][1]
         if values.size < FEWEST_SAMPLES or not np.isfinite(values).all():
             message = f"column {i + 1} has not {FEWEST_SAMPLES} finite numbers, or contains something else"
@@ -360,7 +358,7 @@ def _asked(
         made[word.rstrip("0123456789")].append((_plain(channels[i][0], i), values))
     if len(made["u"]) > 1 or not made["y"]:
         message = "--columns of a record in time has one t, at most one u, and one y or more"
-        raise UsageError(Diagnostic("SF902", message, None, "such as t,u,y or u,y,dt=0.01"))
+        raise refused(message, "such as t,u,y or u,y,dt=0.01")
     return TimeRecord(stem, step, tuple(made["y"]), next(iter(made["u"]), None), tuple(guesses))
 
 
@@ -372,7 +370,7 @@ def _asked_arrays(arrays: Arrays, words: Sequence[str], interval: str, name: str
     chosen = chosen if keys else list(matrix.T)
     if len(chosen) < len(words) or len({x.size for x in chosen}) != 1:
         message = f"'{name}': --columns {','.join(words)[:60]}: there are no such arrays of one length"
-        raise UsageError(Diagnostic("SF902", message, None, f"it has {listed_names(list(arrays))}"))
+        raise refused(message, f"it has {listed_names(list(arrays))}")
     channels = [(c, np.asarray(x, np.float64)) for c, x in zip(keys or words, chosen, strict=False)]
     words, guesses = [word.partition("=")[0] for word in words], [f"the columns are those of '{whole[:30]}'"]
     return _asked(channels, words, interval, stem, [] if keys else guesses)

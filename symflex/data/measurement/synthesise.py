@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from symflex.budget import spend
 from symflex.data.measurement.measured_response import MeasuredResponse
-from symflex.errors import Diagnostic, UsageError
+from symflex.errors import refused
 from symflex.options import MeasureOptions, band_ends
 
 Real = npt.NDArray[np.float64]
@@ -52,13 +52,9 @@ class MeasurementPlan:
 
     @staticmethod
     def of(given: MeasureOptions, band: tuple[Fraction, Fraction] | None) -> MeasurementPlan:
-        """Return the plan that options say, over a band [Hz] where they say none.
-
-        SF902 where there is none at all, and for a plan that cannot be meant.
-        """
+        """Return the plan that options say, over a band [Hz] where they say none; SF902 without one."""
         if given.band is None and band is None:
-            message = "the specification has no [analysis] band"
-            raise UsageError(Diagnostic("SF902", message, None, "give one with --band LO HI"))
+            raise refused("the specification has no [analysis] band", "give one with --band LO HI")
         low, high = map(float, (band or ()) if given.band is None else band_ends(given.band))
         spacing = high / 800 if given.spacing is None else given.spacing
         plan = MeasurementPlan(low, high, spacing, given.averages, given.noise, given.rolloff, given.seed)
@@ -84,22 +80,20 @@ class MeasurementPlan:
         """Raise SF902 for a plan that cannot be meant, SF607 for one that is too large."""
         for what, value in (("noise", self.noise), ("roll-off", self.rolloff_hz)):
             if value is not None and not np.isfinite(value):
-                raise UsageError(Diagnostic("SF902", f"the {what} is {value:g}: not a finite number"))
+                raise refused(f"the {what} is {value:g}: not a finite number")
         if (
             not np.isfinite((self.low_hz, self.high_hz, self.spacing_hz)).all()
             or not 0 < self.spacing_hz < self.high_hz
             or not 0 < self.low_hz < self.high_hz
         ):
-            message = "a measurement needs 0 < LO < HI and a line spacing below HI"
-            raise UsageError(Diagnostic("SF902", message))
+            raise refused("a measurement needs 0 < LO < HI and a line spacing below HI")
         if not LOWEST_HZ <= self.low_hz < self.high_hz <= HIGHEST_HZ:
-            message = f"frequencies of a measurement lie between {LOWEST_HZ:g} and {HIGHEST_HZ:g} Hz"
-            raise UsageError(Diagnostic("SF902", message))
+            raise refused(f"frequencies of a measurement lie between {LOWEST_HZ:g} and {HIGHEST_HZ:g} Hz")
         if self.noise < 0 or self.averages < 1 or (self.rolloff_hz is not None and self.rolloff_hz <= 0):
-            raise UsageError(Diagnostic("SF902", "noise, averages and roll-off must be positive"))
+            raise refused("noise, averages and roll-off must be positive")
         if SAMPLING * self.high_hz / self.spacing_hz * self.averages > MOST_SAMPLES:
             message = f"this measurement takes more than {MOST_SAMPLES} samples"
-            raise UsageError(Diagnostic("SF902", message, None, "use fewer averages, or lines further apart"))
+            raise refused(message, "use fewer averages, or lines further apart")
 
 
 def synthesise(
@@ -126,9 +120,7 @@ def synthesise(
     response[excited] = _interpolated(function, frequency[excited], plan)
     if not np.isfinite(response).all():
         message = f"{name} is not finite between {plan.low_hz:g} and {plan.high_hz:g} Hz"
-        raise UsageError(
-            Diagnostic("SF902", message, None, "an undamped resonance has no stationary response")
-        )
+        raise refused(message, "an undamped resonance has no stationary response")
     with np.errstate(all="ignore"):  # what leaves the doubles is told below
         if plan.rolloff_hz is not None:
             x = frequency / plan.rolloff_hz
@@ -151,7 +143,7 @@ def synthesise(
         coherence = np.abs(cross[shown]) ** 2 / (power_in[shown] * power_out[shown])
     if not (np.isfinite(coherence).all() and np.isfinite(cross[shown]).all()):
         message = f"the sensor signal of {name} exceeds the range of double precision"
-        raise UsageError(Diagnostic("SF902", message, None, "use less --noise or a higher --rolloff"))
+        raise refused(message, "use less --noise or a higher --rolloff")
     independent = 1.0 if plan.averages == 1 else round(OVERLAP_WORTH * plan.averages, 2)
     sensor = "no sensor" if plan.rolloff_hz is None else f"sensor 2nd order, {plan.rolloff_hz:g} Hz"
     note = (

@@ -55,8 +55,7 @@ _EASTERN: Final = {"GB18030": "频率", "Shift_JIS": "周波数"}
 """Encodings beside UTF-8, and the word for a frequency by which they are known."""
 SAMPLE, MOST_SAMPLED = 400, 200_000
 """Lines from the middle of a file by which delimiter and decimal sign are chosen, and their characters."""
-MAX_CELLS: Final = 5_000_000
-"""Cells that all rows may have together; reading them takes 15 s and 800 MB."""
+MAX_CELLS: Final = 5_000_000  # cells that all rows may have together; reading them takes 15 s and 800 MB
 LONGEST_LINE: Final = 20_000
 LONGEST_NUMBER: Final = 100
 FEWEST_ROWS: Final = 3

@@ -19,7 +19,7 @@ import numpy.typing as npt
 
 from symflex.data.measurement.measured_response import MAX_LINES, MeasuredResponse, checked_response
 from symflex.data.measurement.text_table import decoded
-from symflex.errors import DataError, Diagnostic, Source, Span, UsageError
+from symflex.errors import DataError, Diagnostic, Source, Span, refused
 
 Complex = npt.NDArray[np.complex128]
 _SCALES: Final = {"HZ": 1.0, "KHZ": 1e3, "MHZ": 1e6, "GHZ": 1e9}
@@ -28,10 +28,7 @@ _KEYWORD = re.compile(r"\[(reference|two-port data order|version)\]\s*([-+.\w]+)
 
 
 def read_touchstone(name: str, data: bytes, stem: str, asked: str = "") -> tuple[MeasuredResponse, ...]:
-    """Read the impedance of a one-port, or S21 of a two-port; ``asked`` names another one, such as ``z21``.
-
-    SF601 no such file; SF603, SF604, SF605, SF607 values; SF902 for what is not there.
-    """
+    """Read the impedance of a one-port, or S21 of a two-port; ``asked`` names another one, as ``z21``."""
     ports = 1 if Path(name).suffix.lower() != ".s2p" else 2
     text, guesses = decoded(name, data)
     source = Source(name, text)
@@ -129,7 +126,7 @@ def _chosen(parameters: Complex, kind: str, chosen: str, resistance: float, name
         names = ", ".join(
             f"{k}{i}{j}" for k in "szy" for i in range(1, ports + 1) for j in range(1, ports + 1)
         )
-        raise UsageError(Diagnostic("SF902", f"'{name}': --columns {chosen[:20]}", None, f"one of {names}"))
+        raise refused(f"'{name}': --columns {chosen[:20]}", f"one of {names}")
     one = np.eye(ports)
     wanted = match[1].upper()
     matrices: npt.NDArray[np.complexfloating] = parameters

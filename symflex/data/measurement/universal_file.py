@@ -25,7 +25,7 @@ from symflex.data.measurement.measured_response import (
     unit_of,
     window_of,
 )
-from symflex.errors import DataError, Diagnostic, UsageError
+from symflex.errors import DataError, Diagnostic, refused
 from symflex.errors.optional import installed
 
 MARK: Final = b"    -1"
@@ -58,17 +58,9 @@ _Place = tuple[int, int]  # the line where a dataset 58 begins, and which of all
 
 
 def read_universal_file(name: str, data: bytes, stem: str, asked: str = "") -> tuple[MeasuredResponse, ...]:
-    """Read all frequency responses of a universal file; coherence functions of the same ends become weights.
-
-    Responses are called by quantity, node and direction, ``A_2Z/F_1X``, unless their titles are such names.
-
-    SF902 when pyuff is not installed, or columns are ``asked``; SF601 no universal file, or a dataset that
-    cannot be read; SF602 none with a frequency response; SF603, SF604, SF605 values; SF607 too many datasets
-    or lines.
-    """
+    """Read all responses, called ``A_2Z/F_1X`` unless titles name them; coherence becomes their weights."""
     if asked:
-        message = f"'{name}' describes its own contents: --columns does not apply"
-        raise UsageError(Diagnostic("SF902", message))
+        raise refused(f"'{name}' describes its own contents: --columns does not apply")
     places, kinds = _datasets(name, data)
     if not places:
         held = ", ".join(f"{k} ({DATASETS.get(k, 'not read')})" for k in sorted(set(kinds))[:8])
@@ -112,10 +104,7 @@ def read_universal_file(name: str, data: bytes, stem: str, asked: str = "") -> t
 
 
 def _datasets(name: str, data: bytes) -> tuple[list[_Place], dict[int, int]]:
-    """Return the datasets 58, each with a header that can be read and counts within limits, and all kinds.
-
-    With each kind goes the first number of its first line, which of units says the system.
-    """
+    """Return the datasets 58, with headers that can be read, and by kind of all datasets a first number."""
     places: list[_Place] = []
     kinds: dict[int, int] = {}
     place, lines = 0, 0

@@ -151,8 +151,7 @@ class Gyrator(TwoPort):
 class ElectricMotor(Element):
     """Base of motors: a winding whose current pushes what moves, and is pushed against by its motion."""
 
-    constants: ClassVar[tuple[str, str]]
-    """The force or torque per current, and the voltage per velocity."""
+    constants: ClassVar[tuple[str, str]]  # the force or torque per current, and the voltage per velocity
     moves_as_one = True
 
     def stamp(self, use: ElementUse) -> Stamp:
@@ -407,8 +406,7 @@ class OpAmp(Element):
 class ControlledSource(Element):
     """Base of the four controlled sources: a voltage or a current, by a voltage or a current."""
 
-    is_voltage: ClassVar[bool]
-    """Whether the value is a voltage."""
+    is_voltage: ClassVar[bool]  # whether the value is a voltage
     by_current: ClassVar[bool]
     """Whether it follows the current from the first input to the second, which are then one node."""
     through = ("i",)

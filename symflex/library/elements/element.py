@@ -252,21 +252,15 @@ class Element(Stateless, ABC):
     parameters: ClassVar[tuple[ParameterPort, ...]] = ()
     choices: ClassVar[tuple[Choice, ...]] = ()
     through: ClassVar[tuple[str, ...]] = ()
-    passive: ClassVar[Passivity | None] = None
-    """``None`` where it is not known to be passive."""
-    is_source: ClassVar[bool] = False
-    """It supplies what its value says, and nothing where that rests."""
+    passive: ClassVar[Passivity | None] = None  # ``None`` where it is not known to be passive
+    is_source: ClassVar[bool] = False  # it supplies what its value says, and nothing where that rests
     is_inertia: ClassVar[bool] = False
-    moves_as_one: ClassVar[bool] = False
-    """Whether all of its nodes lie where one of them lies."""
+    moves_as_one: ClassVar[bool] = False  # whether all of its nodes lie where one of them lies
     compliance: ClassVar[Literal["", "stretching", "bending"]] = ""
     """How it gives way; torsion is stretching about an axis."""
-    carries_x: ClassVar[bool] = False
-    """Whether all of its planar nodes move along x where one of them does."""
-    stiffness: ClassVar[str] = ""
-    """The parameter with which a massless element becomes rigid."""
-    damping: ClassVar[str] = ""
-    """The parameter of a damper without which there is none."""
+    carries_x: ClassVar[bool] = False  # whether all of its planar nodes move along x where one of them does
+    stiffness: ClassVar[str] = ""  # the parameter with which a massless element becomes rigid
+    damping: ClassVar[str] = ""  # the parameter of a damper without which there is none
 
     def unit_of(self, quantity: str, domains: Mapping[str, Placing]) -> str:
         """Return the SI unit of a parameter or through quantity, given the ports' domains."""

@@ -26,8 +26,7 @@ _ESCAPES = {
 """The escapes that messages of tomllib are about, by how these begin."""
 _STRING_OR_COMMENT = re.compile(r"""("(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')|\#[^\n]*+""")
 _INLINE_COMMENT = re.compile(r"[ \t]*+\#[^\n]*+$")
-FOREIGN_COMMENTS = ("%", "//", ";", "--", "/*")
-"""How comments begin in MATLAB, C, Lua and files of settings."""
+FOREIGN_COMMENTS = ("%", "//", ";", "--", "/*")  # how comments begin in MATLAB, C, Lua and files of settings
 _SHOWN = 40
 
 

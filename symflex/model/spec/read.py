@@ -91,11 +91,7 @@ def read_file(name: str, limit: int) -> bytes:
 
 
 def read_bytes(name: str, limit: int) -> bytes:
-    """Return the bytes of a regular file, and of a larger one a byte more than the limit.
-
-    Raises UsageError: SF901 when it is not a regular file. Raises OSError, ValueError when it cannot be
-    opened.
-    """
+    """Return the bytes of a regular file (SF901 else), and of a larger one a byte more than the limit."""
     # O_NONBLOCK: a FIFO that takes the file's place after the first look must not hang the open.
     if not stat.S_ISREG(os.stat(name).st_mode):
         raise _unreadable(name, "not a regular file")

@@ -236,23 +236,19 @@ def scan(source: Source) -> Scan:
     while offset < len(text):
         statements.append(scanner.statement(offset))
         offset = _blank_end(text, statements[-1].end)
-    return Scan(text, _mask(text, scanner.strings), tuple(statements))
+    pieces = []
+    done = 0
+    for start, end in scanner.strings:
+        quotes = quote_width(text, start, end)
+        pieces += [text[done : start + quotes], "x" * (end - start - 2 * quotes)]
+        done = end - quotes
+    pieces.append(text[done:])
+    return Scan(text, _NON_ASCII.sub("x", "".join(pieces)), tuple(statements))
 
 
 def _blank_end(text: str, offset: int) -> int:
     blank = _BLANK.match(text, offset)
     return blank.end() if blank else offset
-
-
-def _mask(text: str, strings: list[tuple[int, int]]) -> str:
-    pieces = []
-    done = 0
-    for start, end in strings:
-        quotes = quote_width(text, start, end)
-        pieces += [text[done : start + quotes], "x" * (end - start - 2 * quotes)]
-        done = end - quotes
-    pieces.append(text[done:])
-    return _NON_ASCII.sub("x", "".join(pieces))
 
 
 def quote_width(text: str, start: int, end: int) -> int:
