@@ -217,8 +217,6 @@ def memory_held(process: int | None = None) -> int:
 def uncollected() -> Iterator[None]:
     """Pause the collector of cycles, whose passes over all objects would make linear work quadratic.
 
-    Examples
-    --------
     >>> import gc
     >>> with uncollected():
     ...     gc.isenabled()

@@ -746,18 +746,8 @@ def checked_digits(digits: int) -> int:
 
 
 def band_ends(band: Ends, *, above_zero: bool = False) -> tuple[Fraction, Fraction]:
-    """Return the ends of a band [Hz].
+    """Return the ends of a band [Hz]; SF902 for texts that are no frequencies, the lower one first.
 
-    Numbers are checked where they are used.
-
-    Raises
-    ------
-    UsageError
-        SF902 for a text that is not a frequency, where the first is not the lower one, and for 0 where
-        frequencies are equally spaced in their logarithm.
-
-    Examples
-    --------
     >>> band_ends(("0.1", "1 kHz"))
     (Fraction(1, 10), Fraction(1000, 1))
     """
@@ -787,15 +777,8 @@ def frequency(given: Stated, flag: str, example: str, *, is_hertz: bool = False)
 
 
 def duration(given: str, flag: str, *, or_zero: bool = False) -> Fraction:
-    """Return a positive time [s], or 0 where that is one, from a text with or without a unit.
+    """Return a positive time [s], or 0 where that is one; SF902 for a text that is none.
 
-    Raises
-    ------
-    UsageError
-        SF902 for a text that is no positive time.
-
-    Examples
-    --------
     >>> duration("20 ms", "--until")
     Fraction(1, 50)
     """
@@ -842,9 +825,7 @@ def tolerance(given: Stated, flag: str, units: tuple[str, ...], example: str) ->
 
 
 def share_of(given: Stated, flag: str) -> Fraction:
-    """Return a share of one, given in percent or as a number; a double counts as its shortest decimal.
-
-    Raises UsageError: SF902 for what is no number between 0 and 1.
+    """Return a share of one, given in percent or as a number; SF902 for none between 0 and 1.
 
     >>> share_of("1 %", "--short"), share_of(0.1, "--spread")
     (Fraction(1, 100), Fraction(1, 10))

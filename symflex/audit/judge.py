@@ -68,10 +68,7 @@ class Audit:
 
 
 def judge(tf: TransferFunction, published: Published) -> Audit:
-    """Compare a printed formula with the derived function.
-
-    Raises SpecError: SF210 an unknown name, SF212 a name that may not stand in a formula, SF215 lines in a
-    circle, SF224 a division by zero, SF225 an exponent that is not a number.
+    """Compare a printed formula with the derived function; SpecError for what is no formula.
 
     >>> from symflex.errors import Source
     >>> from symflex.model import load_model

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from symflex.cli.command import Command, Specification, command_of
-from symflex.cli.reporting import diagnostic_json, emit_json, listed, note, say, show, terminal_width
+from symflex.cli.reporting import diagnostic_json, emit_json, listed, note, say, show, terminal_width, write
 from symflex.errors import SymflexError, refused
 from symflex.errors.diagnostic import nearest, printable
 from symflex.expressions import Equation
@@ -20,9 +19,6 @@ from symflex.options import AuditOptions, CheckOptions, DeriveOptions, ExportOpt
 
 if TYPE_CHECKING:
     from symflex.codegen.export import Exporter
-    from symflex.codegen.latex import LatexExporter
-    from symflex.model import Model
-    from symflex.transfer import AnyTransferFunction
 
 TARGETS_MEANT = {
     "python": "numpy",
@@ -253,7 +249,7 @@ def export(spec: Specification, given: ExportOptions) -> int:
     from symflex.codegen.exporters import SUMMARIES
     from symflex.codegen.latex import LatexExporter
     from symflex.codegen.module_text import identifiers
-    from symflex.files.write import check_folder, check_writable, write_atomically
+    from symflex.files.write import check_folder, check_writable, write_folder
 
     if given.target not in SUMMARIES:
         meant = TARGETS_MEANT.get(given.target.lower(), given.target)
@@ -262,9 +258,10 @@ def export(spec: Specification, given: ExportOptions) -> int:
         missing = "what to export to is missing: --to TARGET"
         raise refused(wrong if given.target else missing, hint)
     exporter = _chosen(given)
-    is_folder = isinstance(exporter, LatexExporter) and bool(given.output) and _is_folder(given.output or "")
+    is_folder = bool(given.output and (given.output.endswith(("/", os.sep)) or Path(given.output).is_dir()))
     if given.output:
-        (check_folder if is_folder else check_writable)(Path(given.output))
+        is_many = is_folder and isinstance(exporter, LatexExporter)
+        (check_folder if is_many else check_writable)(Path(given.output))
     model = spec.load()
     form = given.form if given.target == "latex" else None
     representation = chosen_representation(given.representation, form)
@@ -276,7 +273,12 @@ def export(spec: Specification, given: ExportOptions) -> int:
         is_solved = not (model.is_distributed and isinstance(exporter, Language)) or exporter.is_open
         note(reason if is_solved else "in band form, with the numbers of the file: the formula would be long")
     if isinstance(exporter, LatexExporter) and given.output and is_folder:
-        return _write_fragments(exporter, model, derived, given.output, strict=given.strict)
+        texts, warnings = exporter.export_files(model, derived)
+        for warning in warnings:
+            note(f"warning: {warning}")
+        write_folder(Path(given.output), texts)
+        note(f"wrote {len(texts)} files to {given.output}")
+        return 4 if given.strict and warnings else 0
     stem = Path(given.output).stem if given.output else identifiers({"": Path(spec.path).stem}, ())[""]
     made = exporter.export(model, derived, stem, is_alone=not given.output)
     for warning in made.warnings:
@@ -289,8 +291,7 @@ def export(spec: Specification, given: ExportOptions) -> int:
             message = f"'{given.output}' would overwrite a file that the export writes next to it"
             raise refused(message, f"end its name with {exporter.suffix}")
         for file, text in files.items():
-            write_atomically(file, text.encode() if isinstance(text, str) else text)
-            note(f"wrote {file}")
+            write(file, text)
     elif made.archive:
         raise refused("this export is an archive", f"-o NAME{exporter.suffix}")
     else:
@@ -346,28 +347,6 @@ def _chosen(given: ExportOptions) -> Exporter:
     if exporter is None:
         raise refused(f"--to {given.target} needs a sampling time", "for instance --sample 1ms")
     return exporter
-
-
-def _is_folder(output: str) -> bool:
-    return output.endswith(("/", os.sep)) or Path(output).is_dir()
-
-
-def _write_fragments(
-    exporter: LatexExporter,
-    model: Model,
-    derived: Sequence[AnyTransferFunction],
-    folder: str,
-    *,
-    strict: bool,
-) -> int:
-    from symflex.files.write import write_folder
-
-    files, warnings = exporter.export_files(model, derived)
-    for warning in warnings:
-        note(f"warning: {warning}")
-    write_folder(Path(folder), files)
-    note(f"wrote {len(files)} files to {folder}")
-    return 4 if strict and warnings else 0
 
 
 @command_of("audit", AuditOptions)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from symflex.cli.reporting import emit_json, note, reporting, say, terminal_width
+from symflex.cli.reporting import emit_json, reporting, say, terminal_width, write
 from symflex.errors import Diagnostic, SpecError, Text, UsageError, refused
 from symflex.errors.diagnostic import nearest
 
@@ -81,10 +81,7 @@ def _write_new(text: str, output: str | None) -> None:
         raise UsageError(
             Diagnostic("SF903", f"'{output}' exists and is not overwritten", None, "choose another name")
         )
-    from symflex.files.write import write_atomically
-
-    write_atomically(Path(output), text.encode())
-    note(f"wrote {output}; try: symflex derive {output}, and read its comments")
+    write(output, text, f"; try: symflex derive {output}, and read its comments")
 
 
 MODEL_SIGNATURE = "model(spec, tf)"
@@ -361,9 +358,6 @@ def schema(*, output: str | None) -> int:
     text = json.dumps(json_schema(), indent=1, ensure_ascii=False) + "\n"
     if output is None:
         say(text, nl=False)
-        return 0
-    from symflex.files.write import write_atomically
-
-    write_atomically(Path(output), text.encode())
-    note(f"wrote {output}")
+    else:
+        write(output, text)
     return 0

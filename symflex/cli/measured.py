@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from symflex.budget import entered_budget
 from symflex.cli.command import Specification, bare_command, command_of, first_pair
 from symflex.cli.progress import ProgressBar
-from symflex.cli.reporting import answer, check_place, keep, note, terminal_width
+from symflex.cli.reporting import answer, check_place, keep, note, terminal_width, write
 from symflex.errors import Diagnostic, FitError, SymflexError, refused
 from symflex.options import FitOptions, MeasureOptions
 
@@ -45,7 +45,6 @@ def fit(given: FitOptions) -> int:
     from symflex.data.fitting.specification import fit_specification
     from symflex.data.fitting.text import fit_json, fit_passages
     from symflex.data.measurement import prepared
-    from symflex.files.write import write_atomically
     from symflex.print.text import passages_text
 
     if given.base is not None and given.slope is not None:
@@ -84,8 +83,7 @@ def fit(given: FitOptions) -> int:
         raise FitError(Diagnostic("SF618", f"the fit is poor: {poor[0]}", None, hint))
     if given.output:
         text = fit_specification(whole, Path(given.output).parent, given.loop)
-        write_atomically(Path(given.output), text.encode())
-        note(f"wrote {given.output}")
+        write(given.output, text)
         try:
             pipeline.loads(text, given.output)
         except SymflexError:
@@ -152,18 +150,17 @@ def measure(spec: Specification, given: MeasureOptions) -> int:
     """
     from symflex.analysis.measured import measure as measured_of
     from symflex.data.measurement import WRITERS, measurement_bytes
-    from symflex.files.write import write_atomically
 
     check_place(given.output, WRITERS)
     if not spec.path.endswith(".toml") and (record := _record(spec.path, given)) is not None:
-        write_atomically(Path(given.output), measurement_bytes(record, given.output))
-        note(f"wrote {given.output}: {record.values.size} lines of {record.name}")
+        said = f": {record.values.size} lines of {record.name}"
+        write(given.output, measurement_bytes(record, given.output), said)
         return 0
     model = spec.load()
     tf = "/".join(first_pair(model, given.tf, "measuring"))
     measured = measured_of(model, replace(given, tf=tf, rolloff=given.rolloff or None))
-    write_atomically(Path(given.output), measurement_bytes(measured, given.output))
-    note(f"wrote {given.output}: {measured.values.size} lines of SYNTHETIC data")
+    said = f": {measured.values.size} lines of SYNTHETIC data"
+    write(given.output, measurement_bytes(measured, given.output), said)
     return 0
 
 

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 from symflex.cli.analyses import Ranged
 from symflex.cli.command import Specification, command_of
-from symflex.cli.reporting import PICTURES, check_place, note
+from symflex.cli.reporting import PICTURES, check_place, note, write
 from symflex.cli.respond import show_response
-from symflex.errors import UsageError, refused
+from symflex.errors import refused
 from symflex.errors.diagnostic import nearest
 from symflex.options import DrawOptions, PlotOptions, RespondOptions, duration, gain_ends
 
@@ -38,15 +38,13 @@ def draw(spec: Specification, given: DrawOptions) -> int:
     """
     from symflex.drawing import drawing_of, render_drawing
     from symflex.figures import checked_font
-    from symflex.files.write import write_atomically
     from symflex.print.latex import width_of
 
     path = check_place(given.output or f"{Path(spec.path).stem}_drawing.svg", PICTURES)
     font = checked_font(given.font, path)
     width_mm = width_of(given.width)
     drawing = drawing_of(spec.load(), values=given.values, width_mm=width_mm, font=font)
-    write_atomically(path, render_drawing(drawing, path.suffix.removeprefix(".").lower(), font=font))
-    note(f"wrote {path}")
+    write(path, render_drawing(drawing, path.suffix.removeprefix(".").lower(), font=font))
     return 0
 
 

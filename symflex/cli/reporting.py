@@ -123,6 +123,14 @@ def note(message: str) -> None:
     say(message, err=True)
 
 
+def write(name: str | Path, content: str | bytes, said: str = "") -> None:
+    """Write a file and say so, with what else is to be said."""
+    from symflex.files.write import write_atomically  # most commands print
+
+    write_atomically(Path(name), content.encode() if isinstance(content, str) else content)
+    note(f"wrote {name}{said}")
+
+
 def emit_json(document: Mapping[str, object]) -> None:
     """Print a document as JSON to stdout; what could drive a terminal is escaped."""
     text = json.dumps(document, indent=2, ensure_ascii=False)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from symflex.cli.command import Specification, command_of, first_pair
-from symflex.cli.reporting import PICTURES, answer, check_place, emit_json, note, say
+from symflex.cli.reporting import PICTURES, answer, check_place, emit_json, note, say, write
 from symflex.errors import Diagnostic, UncertifiedError, refused
 from symflex.model import read_settings
 from symflex.options import PeakOptions, RespondOptions, ShapeOptions, axis_ends, duration
@@ -183,17 +183,9 @@ def _check_options(given: RespondOptions, *, is_file: bool) -> None:
 
 def _write(response: EnclosedResponse, given: RespondOptions, path: Path) -> None:
     """Write a table, or a figure as options ask for it."""
-    from symflex.files.write import write_atomically
-
     if path.suffix.lower() == TABLE:
-        write_atomically(path, response.to_csv().encode())
-    else:
-        _draw(response, given, path)
-    note(f"wrote {path}")
-
-
-def _draw(response: EnclosedResponse, given: RespondOptions, path: Path) -> None:
-    """Write a figure as options ask for it."""
+        write(path, response.to_csv())
+        return
     from symflex.figures import checked_font, draw_in_time, save
     from symflex.figures.axes import AxisLimits
     from symflex.print.latex import width_of
@@ -201,6 +193,7 @@ def _draw(response: EnclosedResponse, given: RespondOptions, path: Path) -> None
     font = checked_font(given.font, path)
     frame = AxisLimits(axis_ends(given.xlim, "--xlim"), axis_ends(given.ylim, "--ylim"))
     save(draw_in_time(response, frame=frame, width_mm=width_of(given.width), font=font), path, font=font)
+    note(f"wrote {path}")
 
 
 @command_of("peak", PeakOptions)

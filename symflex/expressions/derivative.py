@@ -68,10 +68,7 @@ AT_ZERO: Final = {
 
 
 def derivative(expression: Expression, leaf: Expression) -> Expression:
-    """Return the derivative of an expression by one of its leaves.
-
-    Raises ValueError, with the part that has none: a function that is not smooth or not known, an exponent
-    that is no whole number. Raises ZeroDivisionError where a denominator is the number zero.
+    """Return the derivative by a leaf; ValueError has the part without one, ZeroDivisionError is raised.
 
     >>> from symflex.expressions import Name, format_expression, parse
     >>> from symflex.errors import Text
@@ -163,9 +160,7 @@ def elementary(expression: Expression) -> Expression:
 
 
 def simplified(expression: Expression, values: Mapping[str, Expression]) -> Expression:
-    """Return an expression with values in place of names, and without what vanishes or is one with them.
-
-    Raises ZeroDivisionError where a denominator becomes the number zero.
+    """Return an expression with values for names, without what vanishes; it may raise ZeroDivisionError.
 
     >>> from symflex.expressions import format_expression, parse
     >>> from symflex.errors import Text

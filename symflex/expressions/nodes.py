@@ -250,9 +250,7 @@ def product_of(factors: Iterable[Expression]) -> Expression:
 
 
 def quotient(numerator: Expression, denominator: Expression) -> Expression:
-    """Return a quotient, with the sign of both parts in front.
-
-    Raises ZeroDivisionError when the denominator is the number zero.
+    """Return a quotient, with the sign of both parts in front; it may raise ZeroDivisionError.
 
     >>> from symflex.expressions.nodes import Name
     >>> quotient(number(-1), Name("s"))
@@ -327,9 +325,7 @@ Value = TypeVar("Value")
 
 
 def names(expression: Expression) -> tuple[Name | Attribute | Call | Derivative, ...]:
-    """Return every node of a tree, or an equation, that bears a name, in order and as often as it appears.
-
-    A call stands before the names in its argument.
+    """Return every node of a tree, or an equation, that bears a name; calls before their arguments.
 
     >>> x = Name("x")
     >>> names(Sum((Call("sin", x), Attribute("motor", "i"), x)))  # doctest: +NORMALIZE_WHITESPACE

@@ -65,10 +65,7 @@ STACK_PER_LEVEL = 4
 def parse(text: Text, *, limits: Limits = USER_LIMITS, brackets: bool = False) -> Expression:
     """Read an expression: sums and products are flat, parentheses leave no trace, numbers are exact.
 
-    Text that the program itself has written takes :data:`PROGRAM_LIMITS`. Raises SpecError: SF111 for a
-    character or word that cannot stand where it stands, SF112 for a name that is too long or begins with an
-    underscore, SF103 for text beyond the limits, SF223 for a bracket with primes without ``brackets``. Only
-    the first problem is reported.
+    Text that the program itself has written takes :data:`PROGRAM_LIMITS`. Only the first problem is reported.
 
     >>> from symflex.errors import Source, Span, Text
     >>> source = Source("robot.toml", "m*s + 2.5e-3")
@@ -89,9 +86,7 @@ def parse(text: Text, *, limits: Limits = USER_LIMITS, brackets: bool = False) -
 
 
 def parse_equation(text: Text, *, limits: Limits = USER_LIMITS) -> Equation:
-    """Read ``left = right``, as fields write their equations and conditions.
-
-    Raises SpecError as :func:`parse`; SF111 also when there is not exactly one ``=``.
+    """Read ``left = right``, as fields write their equations and conditions; SF111 without one ``=``.
 
     >>> from symflex.errors import Source, Span, Text
     >>> source = Source("beam.toml", "w''(l) = 0")

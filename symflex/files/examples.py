@@ -62,9 +62,7 @@ def example_of(path: str) -> str | None:
 
 
 def find_example(name: str) -> Path:
-    """Return the path of an example by its name, or by the last part of it.
-
-    Raises UsageError: SF902 when there is none.
+    """Return the path of an example by its name, or by the last part of it; SF902 when there is none.
 
     >>> find_example("classics/quarter_car") == find_example("quarter_car")
     True

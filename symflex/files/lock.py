@@ -26,8 +26,7 @@ def held(path: Path, *, waits: bool = False) -> Iterator[None]:
 
     The lock is the operating system's, on the file ``PATH.lock`` beside it, so it ends with the process
     however that ends; what a kill leaves of the file locks nothing. Windows, which has none, goes without.
-    ``waits`` says whether to wait for another process rather than refuse. Raises UsageError: SF919 another
-    process holds it, with its number, computer and time; SF903 the lock cannot be made.
+    ``waits`` says whether to wait for another process rather than refuse: SF919.
     """
     if sys.platform == "win32":
         yield

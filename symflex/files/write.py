@@ -33,9 +33,7 @@ def write_atomically(path: Path, data: bytes) -> None:
 
 
 def check_writable(path: Path) -> None:
-    """Refuse, before anything is computed for it, a file that could not be written afterwards.
-
-    Raises UsageError: SF903 as :func:`write_atomically`, as far as that is known beforehand.
+    """Refuse, before anything is computed for it, a file that could not be written afterwards: SF903.
 
     >>> check_writable(Path("no/such/folder/a.svg"))
     Traceback (most recent call last):
@@ -80,8 +78,7 @@ def write_tree(folder: Path, files: Mapping[str, bytes]) -> None:
     """Write files into a folder and its subfolders, which are made when they are missing.
 
     ``folder`` may be a symbolic link, its subfolders not; ``files`` are contents by relative path, ``/``
-    between names. Raises ValueError for a path that leads elsewhere; UsageError: SF903 when something cannot
-    be written, or a subfolder is a symbolic link.
+    between names. ValueError for a path that leads elsewhere; SF903 when something cannot be written.
     """
     for name in files:
         path = PurePosixPath(name)

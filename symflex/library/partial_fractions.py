@@ -46,9 +46,7 @@ def squared(coefficients: Sequence[Factored]) -> tuple[Factored, ...]:
 
 
 def factors(coefficients: Sequence[Factored]) -> list[tuple[tuple[Factored, ...], int]]:
-    """Return the monic factors of ``lambda^n + c_(n-1) lambda^(n-1) + ... + c_0``, with multiplicities.
-
-    A polynomial that is too large to be factored is returned as it is.
+    """Return the monic factors of ``lambda^n + ... + c_0``, with multiplicities; whole if too large.
 
     >>> ring = Ring(("s", "k"))
     >>> k = Factored.generator(ring, "k")

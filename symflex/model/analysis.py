@@ -345,14 +345,14 @@ def _where(
     """Return the lines, ``None`` when one cannot be read."""
     entry = table.get(key)
     inner = reader.table(entry, f"{key} of {what}") if entry else None
-    definitions = []
-    items = inner.entries if inner else ()
-    for item in items:
-        if reader.name(item, "an abbreviation", RESERVED):
-            expression = reader.expression(item.value, f"'{item.key}' of {what}", quantities=False)
-            if expression is not None:
-                definitions.append((item.key, expression))
-    return tuple(definitions) if len(definitions) == len(items) and (inner or not entry) else None
+
+    def read(item: KeyValue) -> tuple[str, Expression] | None:
+        expression = reader.expression(item.value, f"'{item.key}' of {what}", quantities=False)
+        return None if expression is None else (item.key, expression)
+
+    lines = reader.entries(inner, "an abbreviation", read, RESERVED)
+    is_whole = len(lines) == len(inner.entries if inner else ()) and (inner or not entry)
+    return lines if is_whole else None
 
 
 NUMBERS = Line({}, frozenset(), frozenset(), {})  # knows the value of numbers alone

@@ -30,7 +30,7 @@ from symflex.library.words import hint_of_type
 from symflex.model.analysis import named_pairs, pick_tf
 from symflex.model.linearity import EXPONENT_LIMIT
 from symflex.model.model import Model, PlacedBlock
-from symflex.model.reading import Reader, has_ports, read_entries, signed_number
+from symflex.model.reading import Reader, has_ports, signed_number
 from symflex.model.scope import RESERVED
 from symflex.model.spec import ArrayValue, NumberValue, StringValue, TableValue, parse_with_recovery, read
 from symflex.model.units import lower
@@ -86,13 +86,11 @@ class Origin:
 
 def read_blocks(reader: Reader, section: TableValue | None, origin: Origin) -> tuple[PlacedBlock, ...]:
     """Return the blocks in order."""
-    return read_entries(section, lambda entry: _read_block(reader, entry, origin))
+    return reader.entries(section, "a block", lambda entry: _read_block(reader, entry, origin), RESERVED)
 
 
 def _read_block(reader: Reader, entry: KeyValue, origin: Origin) -> PlacedBlock | None:
     what = f"block '{entry.key}'"
-    if not reader.name(entry, "a block", RESERVED):
-        return None
     if isinstance(entry.value, StringValue):
         formula = reader.expression(entry.value, what)
         if formula is None:

@@ -22,7 +22,7 @@ from symflex.model.model import (
     Output,
     Signal,
 )
-from symflex.model.reading import NAME, Reader, read_entries
+from symflex.model.reading import NAME, Reader
 from symflex.model.scope import RESERVED
 from symflex.model.spec import KeyValue, NumberValue, StringValue, TableValue, Value
 from symflex.quantities import (
@@ -67,6 +67,11 @@ class DeclaredParameter:
     spread: Quantity | None = None
 
     @property
+    def written_unit(self) -> str:
+        """The unit of its value, or the one that stands for it; empty if none was written."""
+        return self.unit_text or (self.quantity.unit if self.quantity else "")
+
+    @property
     def measured(self) -> Quantity | None:
         """What it is measured in, with its cycles; ``None`` if no unit was written."""
         if self.quantity is None:
@@ -87,7 +92,7 @@ class DeclaredParameter:
         ):
             unit = _unit_text(measured, reading)
         cycles = measured.cycles if measured is not None and reading is not CycleReading.CONVERTED else 0
-        written = self.quantity.unit if self.quantity is not None else self.unit_text
+        written = self.written_unit
         scale = _scale(written, is_converted=measured is not None and measured.cycles != cycles)
         # What is one in SI units keeps the name it was given: A*s/rad is no C/rad.
         unit = written if written and scale == ONE and not cycles else unit
@@ -118,7 +123,7 @@ def _resolved_spread(spread: Quantity | None, *, is_converted: bool) -> Fraction
 def doubtful_units(declared: Iterable[DeclaredParameter]) -> Iterator[Diagnostic]:
     """Yield a warning for each parameter whose unit data sheets mean differently."""
     for p in declared:
-        unit = p.quantity.unit if p.quantity else p.unit_text
+        unit = p.written_unit
         is_slow = p.quantity and p.quantity.magnitude < 1  # 0.5 1/min is a rate, 3000 1/min a speed
         if (doubt := unit_doubt(unit)) and not ("min" in unit and is_slow):
             message = f"the unit '{unit}' of '{p.name}' may mean something else: {doubt[0]}"
@@ -209,13 +214,11 @@ def read_parameters(
 ) -> tuple[DeclaredParameter, ...]:
     """Return the declared parameters in order; definitions are what a formula may name as well."""
     named = {key for table in (section, definitions) if table for key in table.keys()}
-    return read_entries(section, lambda entry: _read_parameter(reader, entry, named))
+    return reader.entries(section, "a parameter", lambda e: _read_parameter(reader, e, named), RESERVED)
 
 
-def _read_parameter(reader: Reader, entry: KeyValue, named: Collection[str]) -> DeclaredParameter | None:
+def _read_parameter(reader: Reader, entry: KeyValue, named: Collection[str]) -> DeclaredParameter:
     what = f"parameter '{entry.key}'"
-    if not reader.name(entry, "a parameter", RESERVED):
-        return None
     table = entry.value if isinstance(entry.value, TableValue) else None
     if table:
         reader.keys(table, ("value", "unit", "range", "spread", "doc", "latex", "assume"), what)
@@ -228,32 +231,17 @@ def _read_parameter(reader: Reader, entry: KeyValue, named: Collection[str]) -> 
         literal = literal or quantity is not None
     if problem := without_sign(entry.key, quantity, assume, (inner or entry).value.span):
         reader.take((problem,))
-    own_unit = unit_text or (quantity.unit if quantity else "")
-    return DeclaredParameter(
-        entry.key,
-        quantity,
-        literal,
-        unit_text,
-        assume,
-        read_label(reader, table, what),
-        reader.plain(table, "doc", what),
-        entry.key_span,
-        _limits(reader, table, entry.key, quantity, own_unit, assume),
-        _spread(reader, table, entry.key, quantity, own_unit, assume),
-    )
+    label, doc = read_label(reader, table, what), reader.plain(table, "doc", what)
+    p = DeclaredParameter(entry.key, quantity, literal, unit_text, assume, label, doc, entry.key_span)
+    if table is None:
+        return p
+    return replace(p, limits=_limits(reader, table, p), spread=_spread(reader, table, p))
 
 
-def _limits(
-    reader: Reader,
-    table: TableValue | None,
-    name: str,
-    quantity: Quantity | None,
-    unit_text: str,
-    assume: Assumption,
-) -> tuple[Quantity, Quantity] | None:
+def _limits(reader: Reader, table: TableValue, p: DeclaredParameter) -> tuple[Quantity, Quantity] | None:
     """Return the ends of a parameter's ``range``; numbers are in the unit of its value."""
-    entry, what = table.get("range") if table else None, f"range of parameter '{name}'"
-    if table is None or entry is None or (table.get("value") and quantity is None):
+    entry, what, unit_text = table.get("range"), f"range of parameter '{p.name}'", p.written_unit
+    if entry is None or (table.get("value") and p.quantity is None):
         return None
     example = 'two values, for instance range = ["50 kN/m", "200 kN/m"]'
     ends: list[Quantity] = []
@@ -265,10 +253,8 @@ def _limits(
             unit = unit_of(unit_text)
             scaled = (end.magnitude * unit.scale, end.pi_power + unit.pi_power)
             end = replace(one_of(unit_text), magnitude=scaled[0], pi_power=scaled[1])
-        if problem := _misfit(end, what, name, unit_text, value.span):
-            reader.take((problem,))
-            return None
-        if problem := without_sign(name, end, assume, value.span):
+        problem = _misfit(end, what, p.name, unit_text, value.span)
+        if problem := problem or without_sign(p.name, end, p.assume, value.span):
             reader.take((problem,))
             return None
         ends.append(end)
@@ -291,16 +277,10 @@ def _misfit(given: Quantity, what: str, name: str, unit_text: str, span: Span | 
     return Diagnostic("SF203", f"{what} is in '{given.unit}', and '{name}' {declared}", span)
 
 
-def _spread(
-    reader: Reader,
-    table: TableValue | None,
-    name: str,
-    quantity: Quantity | None,
-    unit_text: str,
-    assume: Assumption,
-) -> Quantity | None:
+def _spread(reader: Reader, table: TableValue, p: DeclaredParameter) -> Quantity | None:
     """Return a parameter's ``spread`` to either side: a share of its value, or a quantity in its unit."""
-    entry, what = table.get("spread") if table else None, f"spread of parameter '{name}'"
+    entry, what = table.get("spread"), f"spread of parameter '{p.name}'"
+    name, quantity, unit_text = p.name, p.quantity, p.written_unit
     spread = reader.quantity(entry.value, what, 'for instance spread = "10 %"') if entry else None
     if spread is None or entry is None:
         return None
@@ -317,9 +297,9 @@ def _spread(
     elif problem is None and value == 0 and _is_share(spread):
         hint = "give it in the unit of the value"
         problem = Diagnostic("SF208", f"{what} is a share of its value, which is 0", span, hint)
-    elif problem is None and value is not None and assume != "real" and most is not None:
+    elif problem is None and value is not None and p.assume != "real" and most is not None:
         at_end = Quantity(most - size, 0, 0, DIMENSIONLESS, 0, "")
-        problem = without_sign(name, at_end, assume, span)
+        problem = without_sign(name, at_end, p.assume, span)
         if problem is not None:
             message = problem.message.replace(" is", " less its spread is", 1)
             problem = replace(
@@ -421,20 +401,18 @@ def assuming(name: str, assume: Assumption) -> str:
 
 def read_definitions(reader: Reader, section: TableValue | None) -> tuple[Definition, ...]:
     """Return the definitions in order, without circular ones."""
-    return in_order(reader, read_entries(section, lambda entry: _read_definition(reader, entry)))
 
+    def read(entry: KeyValue) -> Definition | None:
+        what = f"definition '{entry.key}'"
+        value, label = _value_and_label(reader, entry, what, 'for instance { expr = "m*s^2" }')
+        expression = None
+        if isinstance(value, NumberValue | StringValue):
+            expression = reader.expression(value, what)
+        elif value is not None:
+            reader.misfit(f"{what} must be an expression", value)
+        return None if expression is None else Definition(entry.key, expression, label, entry.key_span)
 
-def _read_definition(reader: Reader, entry: KeyValue) -> Definition | None:
-    what = f"definition '{entry.key}'"
-    if not reader.name(entry, "a definition", RESERVED):
-        return None
-    value, label = _value_and_label(reader, entry, what, 'for instance { expr = "m*s^2" }')
-    expression = None
-    if isinstance(value, NumberValue | StringValue):
-        expression = reader.expression(value, what)
-    elif value is not None:
-        reader.misfit(f"{what} must be an expression", value)
-    return None if expression is None else Definition(entry.key, expression, label, entry.key_span)
+    return in_order(reader, reader.entries(section, "a definition", read, RESERVED))
 
 
 def _value_and_label(reader: Reader, entry: KeyValue, what: str, example: str) -> tuple[Value | None, str]:
@@ -484,25 +462,21 @@ def in_order(reader: Reader, definitions: Sequence[Definition]) -> tuple[Definit
 
 def read_signals(reader: Reader, section: TableValue | None) -> tuple[Signal, ...]:
     """Return the signals in order."""
-    return read_entries(section, lambda entry: _read_signal(reader, entry))
 
+    def read(entry: KeyValue) -> Signal | None:
+        expression = reader.expression(entry.value, f"signal '{entry.key}'", quantities=False)
+        return None if expression is None else Signal(entry.key, expression, entry.key_span)
 
-def _read_signal(reader: Reader, entry: KeyValue) -> Signal | None:
-    if not reader.name(entry, "a signal", RESERVED):
-        return None
-    expression = reader.expression(entry.value, f"signal '{entry.key}'", quantities=False)
-    return None if expression is None else Signal(entry.key, expression, entry.key_span)
+    return reader.entries(section, "a signal", read, RESERVED)
 
 
 def read_outputs(reader: Reader, section: TableValue | None) -> tuple[Output, ...]:
     """Return the outputs in order."""
-    return read_entries(section, lambda entry: _read_output(reader, entry))
 
+    def read(entry: KeyValue) -> Output | None:
+        what = f"output '{entry.key}'"
+        value, label = _value_and_label(reader, entry, what, 'for instance { expr = "x_tip" }')
+        expression = None if value is None else reader.expression(value, what, quantities=False)
+        return None if expression is None else Output(entry.key, expression, None, "", label, entry.key_span)
 
-def _read_output(reader: Reader, entry: KeyValue) -> Output | None:
-    if not reader.name(entry, "an output"):
-        return None
-    what = f"output '{entry.key}'"
-    value, label = _value_and_label(reader, entry, what, 'for instance { expr = "x_tip" }')
-    expression = None if value is None else reader.expression(value, what, quantities=False)
-    return None if expression is None else Output(entry.key, expression, None, "", label, entry.key_span)
+    return reader.entries(section, "an output", read)

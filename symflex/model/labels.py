@@ -22,9 +22,7 @@ _TOKEN = re.compile(r"\\(?P<command>[A-Za-z]+)|\\(?P<space>[,;:! ])|(?P<plain>[A
 
 
 def check_label(label: Text) -> str:
-    r"""Return the label when it is harmless LaTeX mathematics.
-
-    Raises SpecError: SF230, at the offending characters.
+    r"""Return the label when it is harmless LaTeX mathematics; SF230 at characters that are not.
 
     >>> from symflex.errors import Source, Span, Text
     >>> source = Source("a.toml", r"\omega_{p1}")

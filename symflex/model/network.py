@@ -25,7 +25,7 @@ from symflex.model.model import (
     PlacedBlock,
     Signal,
 )
-from symflex.model.reading import NAME, Reader, has_ports, read_entries, signed_number
+from symflex.model.reading import NAME, Reader, has_ports, signed_number
 from symflex.model.scope import RESERVED
 from symflex.model.spec import ArrayValue, BooleanValue, KeyValue, StringValue, TableValue
 from symflex.quantities import Dimension, name_hint, parse_unit, unit_of
@@ -97,13 +97,11 @@ class DraftInput:
 
 def read_elements(reader: Reader, section: TableValue | None) -> tuple[DraftElement, ...]:
     """Return every element; what is wrong is noted and the element left out."""
-    return read_entries(section, lambda entry: _read_element(reader, entry))
+    return reader.entries(section, "an element", lambda entry: _read_element(reader, entry))
 
 
 def _read_element(reader: Reader, entry: KeyValue) -> DraftElement | None:
     what = f"element '{entry.key}'"
-    if not reader.name(entry, "an element"):
-        return None
     hint = 'for instance { type = "spring", between = ["a", "b"], k = "k" }'
     table = reader.table(entry, what, hint)
     element = _element_type(reader, table, entry) if table else None
@@ -335,13 +333,11 @@ def _reference(reader: Reader, text: Text, domain: PortDomain, what: str) -> Nod
 
 def read_inputs(reader: Reader, section: TableValue | None) -> tuple[DraftInput, ...]:
     """Return every input; what is wrong is noted and the input left out."""
-    return read_entries(section, lambda entry: _read_input(reader, entry))
+    return reader.entries(section, "an input", lambda entry: _read_input(reader, entry), RESERVED)
 
 
 def _read_input(reader: Reader, entry: KeyValue) -> DraftInput | None:
     what = f"input '{entry.key}'"
-    if not reader.name(entry, "an input", RESERVED):
-        return None
     table = reader.table(entry, what, EXAMPLE)
     if table is None:
         return None

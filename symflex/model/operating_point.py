@@ -148,9 +148,6 @@ def linearised(
     ``moving`` are all names that vary, ``constants`` all that do not, with the expressions of those that are
     defined; ``numbers`` are the values of parameters, ``signed`` those that may be negative. Without an
     operating point only derivatives are rewritten, as products with s.
-
-    Raises SpecError, with all that was noted before: SF222, SF224 where there is no linear equation, SF407
-    where one does not hold at rest.
     """
     equations = {x.name: x.expression for x in signals if isinstance(x.expression, Equation)}
     primes = (isinstance(n, Derivative | Differentiated) for e in equations.values() for n in nodes(e))

@@ -56,12 +56,6 @@ def describe(value: Value) -> str:
             return value.kind if value.kind in ("inf", "nan") else f"a {value.kind}"
 
 
-def read_entries(section: TableValue | None, read: Callable[[KeyValue], Made | None]) -> tuple[Made, ...]:
-    """Return what can be read of a section's entries, in order."""
-    made = [read(entry) for entry in section.entries] if section else []
-    return tuple(each for each in made if each is not None)
-
-
 @dataclass(slots=True)
 class Reader:
     """Typed access to entries; ``problems`` collects what does not fit."""
@@ -132,6 +126,17 @@ class Reader:
             self.note("SF213", message, entry.key_span, reserved[entry.key])
             return False
         return True
+
+    def entries(
+        self,
+        section: TableValue | None,
+        what: str,
+        read: Callable[[KeyValue], Made | None],
+        reserved: Mapping[str, str] | None = None,
+    ) -> tuple[Made, ...]:
+        """Return what can be read of the entries of a section, in order, whose keys are names."""
+        named = (e for e in (section.entries if section else ()) if self.name(e, what, reserved))
+        return tuple(made for made in map(read, named) if made is not None)
 
     def string(self, entry: KeyValue, what: str) -> Text | None:
         """Return the entry's string."""

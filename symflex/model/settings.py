@@ -28,9 +28,7 @@ OPTION = "--set"
 
 
 def read_settings(texts: Sequence[str], option: str = OPTION) -> dict[str, str]:
-    """Return what ``NAME=VALUE`` texts of an option say.
-
-    Raises UsageError: SF902 for a text that is not NAME=VALUE, or a name that is given twice.
+    """Return what ``NAME=VALUE`` texts of an option say; SF902 for others, and a name given twice.
 
     >>> read_settings(["k=80 kN/m", "m = 2"])
     {'k': '80 kN/m', 'm': '2'}
@@ -108,9 +106,7 @@ def _settled(reader: Reader, parameter: DeclaredParameter, given: Setting) -> De
 def spread_box(
     parameters: Iterable[ModelParameter], share: Fraction | None = None
 ) -> dict[str, tuple[Fraction, Fraction]]:
-    """Return the ends of each parameter that has a ``spread``, or of all for a share of their values.
-
-    Values that contain pi are enclosed. Raises UsageError: SF804 for none, or for values of the wrong sign.
+    """Return the ends of each parameter that has a ``spread``, or of all for a share; SF804 for none.
 
     >>> from symflex.model.model import ExactValue, ModelParameter
     >>> m = ModelParameter("m", ExactValue(Fraction(2)), spread=Fraction(1, 10))

@@ -435,10 +435,7 @@ def sign_between(
     slope: Callable[[arb], arb | None],
     is_zero: tuple[bool, bool],
 ) -> int | None:
-    """Return the sign of a function of x all along an interval, but at ends; ``None`` if it is not known.
-
-    ``value`` and ``slope`` enclose the function and its slope on a ball of x; ``is_zero`` says of each end
-    whether the function vanishes there.
+    """Return the sign of a function along an interval, but at ends where it ``is_zero``; else ``None``.
 
     >>> sign_between((arb(0), arb(1)), lambda x: x * (1 - x), lambda x: 1 - 2 * x, (True, True))
     1

@@ -144,9 +144,7 @@ _NO_CONSTANT: Final = Constant(Fraction(1), 0, -1, -1)
 
 
 def evaluate(value: str, kind: str) -> tuple[Constant, PlacedUnit]:
-    """Read a text as a ``"quantity"`` or a ``"unit"``; a part that is not there is 1.
-
-    Raises RejectedError with offsets in ``value``.
+    """Read a text as a ``"quantity"`` or a ``"unit"``, of which a part that is missing is 1.
 
     >>> constant, placed = evaluate("1/4 mm", "quantity")
     >>> constant.magnitude, placed.unit.scale, (placed.start, placed.end)

@@ -51,8 +51,6 @@ def parse_quantity(text: Text) -> Quantity:
 
     Between constant and unit stands a space; a plain number may touch a unit's first letter (``3kg``). The
     text is untrusted, of at most 200 characters. Cycles (Hz, rev, rpm) are counted, not multiplied by 2 pi.
-    Raises SpecError: SF201 for an unknown unit, SF202 for a malformed quantity, SF103 for one beyond the
-    limits.
 
     >>> stiffness = parse_quantity(Text.alone("a.toml", "35 kN/m"))
     >>> stiffness.magnitude, str(stiffness.dimension), stiffness.unit
@@ -73,8 +71,6 @@ def parse_quantity(text: Text) -> Quantity:
 def parse_unit(text: Text) -> Unit:
     """Read a unit alone, from an untrusted text; ``1`` is the unit of a pure number.
 
-    Raises SpecError: SF201 for an unknown unit, SF202 for a malformed one, SF103 for one beyond the limits.
-
     >>> parse_unit(Text.alone("a.toml", "mm/rev")).scale
     Fraction(1, 1000)
     """
@@ -84,9 +80,7 @@ def parse_unit(text: Text) -> Unit:
 
 @functools.cache
 def unit_of(text: str) -> Unit:
-    """Return a unit written in a program's own text.
-
-    Every text is remembered, so this is for literals; read a user's text with :func:`parse_unit`.
+    """Return a unit written in a program's own text; :func:`parse_unit` reads a user's.
 
     >>> str(unit_of("N*m/A").dimension), unit_of("N*m/rad").radians
     ('V*s', -1)

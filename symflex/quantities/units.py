@@ -287,9 +287,7 @@ _USUAL_PREFIXES: Final = ("", "n", "u", "m", "c", "k", "M", "G")
 
 
 def unit_named(symbol: str) -> Unit | None:
-    """Return the unit of a symbol, prefixed or not, or ``None`` when there is none.
-
-    A symbol of the table goes before a prefixed reading: ``min`` is the minute.
+    """Return the unit of a symbol, prefixed or not (``min`` is the minute), or ``None`` without one.
 
     >>> unit_named("krpm").scale, unit_named("Krpm")
     (Fraction(50, 3), None)

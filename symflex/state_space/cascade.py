@@ -58,9 +58,6 @@ class _Section:
 def cascade(zeros: Sequence[mpmath.mpc], poles: Sequence[mpmath.mpc], gain: mpmath.mpf, name: str) -> Arrays:
     """Return the state equations of ``gain*prod(s - z)/prod(s - p)``; messages call it ``name``.
 
-    Roots [rad/s] come as often as their multiplicity says, conjugates of each other or real. SF236 when there
-    are more zeros than poles, SF233 when a number does not fit in double precision.
-
     >>> made = cascade([], [mpmath.mpc(0, 2), mpmath.mpc(0, -2)], mpmath.mpf(8), "8/(s^2 + 4)")
     >>> made.a.tolist(), made.b.tolist(), made.c.tolist()
     ([[0.0, 2.0], [-2.0, 0.0]], [[0.0], [1.0]], [[4.0, 0.0]])

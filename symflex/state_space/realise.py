@@ -61,10 +61,7 @@ NAMES_OF_RATES = ("", "_dot", "_ddot")
 def realise(model: Model, pairs: Sequence[tuple[str, str]] | None = None) -> StateSpace:
     """Return one realisation with the outputs and inputs of the given pairs, all by default.
 
-    Other inputs are zero. Parameters may be symbols or, by :func:`symflex.model.with_numbers`, numbers. All
-    states of the model are in it, uncontrollable and unobservable ones too. SF235 for a distributed model,
-    SF236 for an output that grows with s, SF251 with loss factors, SF30x for a singular model, SF502 when the
-    coefficients become too large.
+    Other inputs are zero. All states of the model are in it, uncontrollable and unobservable ones too.
 
     >>> from symflex import pipeline
     >>> model = pipeline.loads('''

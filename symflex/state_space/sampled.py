@@ -99,15 +99,8 @@ class Sampling:
 def sampling_of(
     sample: Stated, method: str | None = None, prewarp: Stated | None = None, flag: str = "--sample"
 ) -> Sampling:
-    """Return how a system is sampled, from a sampling time [s] and a frequency [Hz], with units or without.
+    """Return how a system is sampled, from a time [s] and a frequency [Hz], with units or without; SF902.
 
-    Raises
-    ------
-    UsageError
-        SF902 for what is no time or frequency, and as :class:`Sampling` does.
-
-    Examples
-    --------
     >>> sampling_of("2 ms", "tustin").sample
     Fraction(1, 500)
     """
@@ -169,11 +162,11 @@ def sampled_state_space(
     def balls(bits: int) -> tuple[arb_mat, ...]:
         matrices = []
         for _, rows, (height, width) in system.matrices:
-            entries = [[arb(0)] * width for _ in range(height)]
+            matrix = arb_mat(height, width)
             for i, row in enumerate(rows):
                 for j, value in row.items():
-                    entries[i][j] = rounding.enclosed(value, bits)
-            matrices.append(_matrix(entries, width))
+                    matrix[i, j] = rounding.enclosed(value, bits)
+            matrices.append(matrix)
         return tuple(matrices)
 
     groups = (system.states, system.inputs, system.outputs)
@@ -191,16 +184,6 @@ def sampled(
 
     ``names`` are those of states, inputs and outputs.
 
-    Raises
-    ------
-    UsageError
-        SF902 for a negative delay, one of too many samples, or with ``tustin`` of a part of one; for
-        ``matched``, and a pole that ``tustin`` takes to infinity.
-    ModelError
-        SF233 where an entry does not fit in double precision: the system is too fast for the sampling time.
-
-    Examples
-    --------
     >>> lag = lambda bits: (arb_mat([[-1]]), arb_mat([[1]]), arb_mat([[1]]), arb_mat([[0]]))
     >>> found = sampled(lag, Sampling(Fraction(1, 10)), Fraction(0), (["y"], ["u"], ["y"]))
     >>> found.A.round(9).tolist(), found.B.round(9).tolist()
@@ -261,43 +244,30 @@ def _with_past_inputs(
     n, m, p = older.nrows(), older.ncols(), c.nrows()
     if not whole:
         return step, older + newer if n else newer, c, d
+    # Columns are those of states and of u[k - whole] to u[k], which move on by one sample.
+    above = [step, older, newer, arb_mat(n, (whole - 1) * m)]
+    every = _joined(above, [arb_mat(whole * m, n + m), arb_mat(whole * m, whole * m, 1)])
     size = n + whole * m
-    total = [[arb(0)] * size for _ in range(size)]
-    given = [[arb(0)] * m for _ in range(size)]
-    shown = [[arb(0)] * size for _ in range(p)]
-    _put(total, 0, 0, step)
-    _put(total, 0, n, older)
-    _put(given if whole == 1 else total, 0, 0 if whole == 1 else n + m, newer)
-    for i in range(whole - 1):
-        _put(total, n + i * m, n + (i + 1) * m, arb_mat(m, m, 1))
-    _put(given, n + (whole - 1) * m, 0, arb_mat(m, m, 1))
-    _put(shown, 0, 0, c)
-    _put(shown, 0, n, d)
-    return _matrix(total, size), _matrix(given, m), _matrix(shown, size), arb_mat(p, m)
+    shown = _joined([c, d, arb_mat(p, (whole - 1) * m)])
+    return _columns(every, size, 0, size), _columns(every, size, size, size + m), shown, arb_mat(p, m)
 
 
 def _held(a: arb_mat, b: arb_mat, time: arb) -> tuple[arb_mat, arb_mat]:
     """Return ``exp(A t)``, and the integral of that times B from 0 to t."""
     n, m = a.nrows(), b.ncols()
-    size = n + m
-    whole = [[arb(0)] * size for _ in range(size)]
-    _put(whole, 0, 0, a)
-    _put(whole, 0, n, b)
-    grown = (_matrix(whole, size) * time).exp()
-    return (
-        arb_mat(n, n, [grown[i, j] for i in range(n) for j in range(n)]),
-        arb_mat(n, m, [grown[i, n + j] for i in range(n) for j in range(m)]),
-    )
+    grown = (_joined([a, b], [arb_mat(m, n + m)]) * time).exp()
+    return _columns(grown, n, 0, n), _columns(grown, n, n, n + m)
 
 
-def _put(rows: list[list[arb]], top: int, left: int, block: arb_mat) -> None:
-    for i in range(block.nrows()):
-        for j in range(block.ncols()):
-            rows[top + i][left + j] = block[i, j]
+def _joined(*rows: Sequence[arb_mat]) -> arb_mat:
+    """Return a matrix of blocks."""
+    entries = [b[i, j] for row in rows for i in range(row[0].nrows()) for b in row for j in range(b.ncols())]
+    return arb_mat(sum(row[0].nrows() for row in rows), sum(b.ncols() for b in rows[0]), entries)
 
 
-def _matrix(rows: Sequence[Sequence[arb]], columns: int) -> arb_mat:
-    return arb_mat(len(rows), columns, [x for row in rows for x in row])
+def _columns(matrix: arb_mat, height: int, first: int, end: int) -> arb_mat:
+    """Return some columns of the first rows of a matrix."""
+    return arb_mat(height, end - first, [matrix[i, j] for i in range(height) for j in range(first, end)])
 
 
 def _doubles(matrix: arb_mat) -> npt.NDArray[np.float64] | None:

@@ -73,9 +73,7 @@ class Range:
 
 @dataclass(frozen=True)
 class Design:
-    """The points of a sweep: the product of the axes, and for each of its points all draws.
-
-    SF507 for more than a million points.
+    """The points of a sweep: the product of the axes, and for each all draws; SF507 for a million.
 
     >>> grid = Design((Axis("m", (ExactValue(Fraction(1)), ExactValue(Fraction(2)))),))
     >>> grid.count, grid.names, [point[0].rational for point in grid.points]
@@ -227,10 +225,6 @@ def read_design(
     ``NAME=LO:HI:lin|log:COUNT`` and ``NAME=V1,V2,...`` are axes of a grid; ``NAME=LO:HI``, ``NAME=LO:HI:log``
     and ``NAME=+-5%`` (about the declared value) are ranges from which ``draws`` points are drawn. Numbers are
     in SI units or carry a unit.
-
-    SF902 what cannot be read, an unknown parameter, one that is swept twice, ranges without draws or draws
-    without ranges; SF203 another unit, SF209 another sign than assumed of the parameter, or 0 for one that is
-    assumed positive, also as the limit of a range; SF507 too many points.
 
     >>> from symflex.model import ModelParameter
     >>> design = read_design([ModelParameter("k", None)], ["k=1:100:log:3"])

@@ -62,8 +62,7 @@ def open_executor(
 
     ``None`` is this process. ``workers`` are processes on this computer, by default as many as it has
     processors; one needs no process of its own. ``scheduler`` is the address of a ``dask.distributed`` one,
-    such as ``tcp://10.0.0.1:8786``; symflex must be installed where its workers are. SF914 dask.distributed
-    is not installed; SF917 no scheduler answers; SF508 workers of a cluster died.
+    such as ``tcp://10.0.0.1:8786``; symflex must be installed where its workers are.
     """
     if scheduler is not None:
         with _cluster(scheduler) as opened:
@@ -162,8 +161,7 @@ def run_sweep(
 
     Chunks are solved by ``workers`` at a time in processes or on a cluster, in this process without an
     executor. What the journal holds already is not solved again. ``progress`` is told how many points are
-    done and how long the rest will take, by the ``clock`` [s]; ``attributes`` are kept with the result. SF508
-    when workers end before their work.
+    done and how long the rest will take, by the ``clock`` [s]; ``attributes`` are kept with the result.
     """
     size = chunk_size(design.count)
     chunks = range(-(-design.count // size))
@@ -309,9 +307,7 @@ def sweep(
 ) -> Sweep:
     """Solve all points of a design; with an output, write it, and go on where a killed sweep stopped.
 
-    The ``output`` of the options is a .nc, .npz, .csv or .parquet; chunks are kept in ``FILE.part`` until it
-    is written. With ``fresh``, what an earlier run kept is discarded. The rest is as in
-    :func:`symflex.sweep.run_sweep`.
+    Chunks are kept in ``FILE.part`` until it is written. The rest is as in :func:`run_sweep`.
     """
     # The package imports api, which stands above: its version is read without importing it.
     version = str(vars(sys.modules["symflex"])["__version__"])

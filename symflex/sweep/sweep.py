@@ -195,8 +195,6 @@ def assembled(
 def label(name: str) -> str:
     """Return what a parameter is called among the arrays, whose own names it must not take.
 
-    Examples
-    --------
     >>> label("k"), label("mode")
     ('k', 'mode_')
     """

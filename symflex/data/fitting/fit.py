@@ -212,11 +212,6 @@ def fit_resonances(
     The best fit is returned in any case; ``poor`` says why it is no good one. Pole pairs outside the band and
     real poles are residual terms, not resonances. Outliers are left out.
 
-    SF902 for an unknown start or criterion, or options that contradict each other; SF605 too few lines for
-    what is asked; SF615 a base that vanishes in the band.
-
-    Examples
-    --------
     >>> from symflex.data.fitting.resonances import Resonances
     >>> from symflex.data.measurement import MeasuredResponse
     >>> frequency = np.arange(5.0, 20.0, 0.05)

@@ -74,9 +74,6 @@ class Observation:
 def observe(response: MeasuredResponse) -> Observation:
     """Return how lines of a measurement follow from the response seen through a ``hann`` window, or none.
 
-    Lines have a distance of one over the length of a record; where that is not the same throughout, None,
-    they are taken as the values themselves.
-
     >>> from symflex.data.measurement import MeasuredResponse
     >>> seen = observe(MeasuredResponse("Y/U", np.arange(10.0, 20.0), np.ones(10), window="hann"))
     >>> bool(np.allclose(seen(np.ones(seen.omega.size)), 1))

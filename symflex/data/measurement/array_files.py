@@ -275,7 +275,6 @@ def read_variables(data: bytes, limit: int) -> Arrays:
     cells of text an array of their texts, an object one :class:`ClassName`; a field of a structure is called
     ``data.P.frf``, of the second of several ``data(2).P.frf``, a cell ``c{3}``. Of what is none of these
     there is an empty array of objects.
-    ValueError with the reason: no such file, or cut short; OverflowError too large, or too many variables.
     """
     if 0 in data[:4]:  # in version 5 text stands there
         return _version_4(data)

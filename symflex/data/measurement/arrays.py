@@ -196,8 +196,6 @@ def responses_of(arrays: Arrays, name: str, stem: str, asked: str = "") -> tuple
     (``f=freq,h=G``) or columns of a matrix, as ``--columns`` does. Messages call the file ``name``;
     responses are called ``stem`` when the file gives no name.
 
-    SF602 arrays missing, ambiguous or of the wrong shape; SF603, SF604 values; SF605 none, or too few.
-
     >>> (one,) = responses_of({"F": np.arange(1.0, 9), "H": np.ones(8)}, "a.mat", "a")
     >>> one.name, one.frequency_hz.size
     ('a', 8)

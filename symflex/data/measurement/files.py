@@ -198,11 +198,8 @@ def prepared(
     """Return responses with what is known of them, and the lines in a band [Hz] alone.
 
     ``window`` is ``hann``, ``none`` or ``exponential:`` and a time constant [s]. A record keeps
-    the lines from the first to the last that is no noise, eight at least. SF902 a band whose ends are not in
-    order, an unknown window, or no number of averages; SF605 when a response has no lines in the band.
+    the lines from the first to the last that is no noise, eight at least.
 
-    Examples
-    --------
     >>> from symflex.data.measurement import MeasuredResponse
     >>> (one,) = prepared([MeasuredResponse("A/F", [1.0, 2.0, 3.0], [1, 2, 3])], (1.5, 9.0), averages=8)
     >>> one.frequency_hz.tolist(), one.averages

@@ -237,8 +237,6 @@ def checked_response(
 def are_few(wrong: npt.NDArray[np.bool_]) -> bool:
     """Return whether lines without a number may be left out: of those between good ones, a tenth.
 
-    Examples
-    --------
     >>> are_few(np.array([True, False, True, False])), are_few(np.array([True] * 9 + [False] * 20))
     (False, True)
     """
@@ -338,8 +336,6 @@ def unit_of(text: str, file: str, span: Span | None = None) -> str:
 def window_of(text: str) -> str:
     """Return ``hann``, ``exponential:`` and the time constant [s], or nothing for any other window.
 
-    Examples
-    --------
     >>> window_of(" Hanning"), window_of("exponential: 0.5 s"), window_of("flat top")
     ('hann', 'exponential:0.5', '')
     """

@@ -99,9 +99,7 @@ class MeasurementPlan:
 def synthesise(
     name: str, function: Callable[[Real], Complex], plan: MeasurementPlan, unit: str = ""
 ) -> MeasuredResponse:
-    """Return the measurement of a model whose response is a function of positive frequencies [rad/s].
-
-    SF902 for a plan that cannot be meant, or where what the sensor shows is not finite in the band.
+    """Return the measurement of a model whose response is a function of frequencies [rad/s]; SF902.
 
     >>> plan = MeasurementPlan(1.0, 50.0, 0.5, averages=20, noise=0.01)
     >>> seen = synthesise("y/u", lambda omega: 1 / (1 + 0.01j * omega), plan)

@@ -22,10 +22,7 @@ _HEADER_PATH = rf"\[{{0,2}}[ \t]*+({KEY})"
 
 
 def parse(source: Source) -> Spec:
-    r"""Parse a specification: TOML 1.0, with or without a byte order mark, any line ends.
-
-    Raises SpecError: SF101 (syntax) and SF102 (a key or table defined twice), one diagnostic for each error,
-    at most 20; or one SF103 when the text passes a limit (size, nesting, entries, length of numbers).
+    r"""Parse a specification: TOML 1.0; SF101, SF102 for at most 20 errors, or SF103 beyond a limit.
 
     >>> from symflex.errors import Source
     >>> spec = parse(Source("a.toml", '[parameters]\nm_1 = 0.1\n'))

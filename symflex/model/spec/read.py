@@ -27,9 +27,7 @@ _UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 def read(path: str | Path) -> Source:
     r"""Read the text of a specification, without its byte order mark; line ends are kept as they are.
 
-    It is a regular file, in UTF-8, of at most 1 MB. Raises UsageError: SF901 when there is no such regular
-    file or it cannot be opened. Raises SpecError: SF901 when it is too large or not UTF-8, with the byte
-    offset.
+    It is a regular file, in UTF-8, of at most 1 MB; SF901 else.
 
     >>> read("no/such.toml")
     Traceback (most recent call last):

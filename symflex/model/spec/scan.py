@@ -212,9 +212,7 @@ class Scan:
 
 
 def scan(source: Source) -> Scan:
-    r"""Cut a text into statements, and mask the inside of its strings.
-
-    Raises SpecError: SF103 when a limit is passed; SF101 when the text contains half a surrogate pair.
+    r"""Cut a text into statements, and mask the inside of its strings; SF103 beyond a limit.
 
     >>> found = scan(Source("a.toml", 'k = "2 N/m" # stiff\n\n[b]\n'))
     >>> [found.text[s.start : s.end] for s in found.statements]

@@ -30,8 +30,7 @@ def write(mapping: Mapping[str, object]) -> str:
     `parameters`, `elements`, `inputs`, `outputs` and `blocks`, becomes inline tables. Values are str, int,
     Fraction, Decimal, float, bool, list, tuple, arrays of numpy, expressions of SymPy, and mappings of
     these; a fraction that is not a finite decimal becomes the string ``"p/q"``.
-    :func:`symflex.model.spec.parse` gives the mapping back. Raises SpecError: SF104 for a value that cannot
-    be written, with its path; SF103 for one that passes a limit.
+    :func:`symflex.model.spec.parse` gives the mapping back.
 
     >>> print(write({"symflex": 1, "parameters": {"m": {"value": "2 kg"}, "k": Fraction(1, 3)}}), end="")
     symflex = 1
