@@ -273,7 +273,15 @@ def units(unit: str | None, *, as_json: bool) -> int:
     units = {**PREFIXABLE_UNITS, **PLAIN_UNITS} if unit is None else {unit: _checked_unit(unit)}
     if as_json:
         rows = [
-            {"unit": name, **_unit_json(one), "takes_prefix": name in PREFIXABLE_UNITS}
+            {
+                "unit": name,
+                "factor": str(one.scale),
+                "power_of_pi": one.pi_power,
+                "si": str(one.dimension),
+                "cycles": one.cycles,
+                "radians": one.radians,
+                "takes_prefix": name in PREFIXABLE_UNITS,
+            }
             for name, one in units.items()
         ]
         prefixes = {name: str(factor) for name, factor in PREFIXES.items()} if unit is None else {}
@@ -297,16 +305,6 @@ def _checked_unit(text: str) -> Unit:
     except SpecError as problem:
         (wrong, *_) = problem.diagnostics
         raise refused(wrong.message, wrong.hint or "'symflex units' lists them") from None
-
-
-def _unit_json(unit: Unit) -> dict[str, object]:
-    return {
-        "factor": str(unit.scale),
-        "power_of_pi": unit.pi_power,
-        "si": str(unit.dimension),
-        "cycles": unit.cycles,
-        "radians": unit.radians,
-    }
 
 
 def in_si(unit: Unit) -> str:

@@ -34,7 +34,7 @@ from symflex.model.spec import BooleanValue, KeyValue, NumberValue, TableValue, 
 from symflex.quantities import IMAGINARY_NAMES, Quantity, unit_of
 
 if TYPE_CHECKING:
-    from symflex.model.model import Model, ModelParameter
+    from symflex.model.model import Model, ModelParameter, NamedExpressions
     from symflex.model.reading import Reader
 
 ANALYSIS_KEYS = ("band", "data_end", "modes", "digits", "print", "prefer")
@@ -339,9 +339,7 @@ def read_published(reader: Reader, section: TableValue | None, model: Model) -> 
     return tuple(published)
 
 
-def _where(
-    reader: Reader, table: TableValue, what: str, key: str = "where"
-) -> tuple[tuple[str, Expression], ...] | None:
+def _where(reader: Reader, table: TableValue, what: str, key: str = "where") -> NamedExpressions | None:
     """Return the lines, ``None`` when one cannot be read."""
     entry = table.get(key)
     inner = reader.table(entry, f"{key} of {what}") if entry else None

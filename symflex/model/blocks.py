@@ -29,7 +29,7 @@ from symflex.library.elements import ELEMENTS
 from symflex.library.words import hint_of_type
 from symflex.model.analysis import named_pairs, pick_tf
 from symflex.model.linearity import EXPONENT_LIMIT
-from symflex.model.model import Model, PlacedBlock
+from symflex.model.model import Model, NamedExpressions, PlacedBlock
 from symflex.model.reading import Reader, has_ports, signed_number
 from symflex.model.scope import RESERVED
 from symflex.model.spec import ArrayValue, NumberValue, StringValue, TableValue, parse_with_recovery, read
@@ -124,9 +124,7 @@ def _read_block(reader: Reader, entry: KeyValue, origin: Origin) -> PlacedBlock 
     return None if values is None else PlacedBlock(entry.key, block, values, span=entry.key_span)
 
 
-def _read_values(
-    reader: Reader, entry: KeyValue, table: TableValue, block: Block
-) -> tuple[tuple[str, Expression], ...] | None:
+def _read_values(reader: Reader, entry: KeyValue, table: TableValue, block: Block) -> NamedExpressions | None:
     keys = ("type", "doc", *(p.name for p in block.parameters))
     meant = reader.keys(table, keys, f"{block.type_name} '{entry.key}'")
     values: list[tuple[str, Expression]] = []
@@ -183,9 +181,7 @@ def _value(reader: Reader, value: Value, where: str, *, coefficients: bool) -> E
     return sum_of(terms) if len(terms) == len(parts) else None
 
 
-def _matrix(
-    reader: Reader, value: Value, name: str, where: str, size: int
-) -> tuple[tuple[str, Expression], ...] | None:
+def _matrix(reader: Reader, value: Value, name: str, where: str, size: int) -> NamedExpressions | None:
     """Return the entries of a matrix of ``ss``, ``A[1][2]``; ``size`` is that of A, 0 if it is not known."""
     size = len(items_of(value)) if name == "A" else size
     shape = {"A": (size, size), "B": (size, 1), "C": (1, size), "D": (1, 1)}[name]

@@ -18,10 +18,9 @@ from symflex.errors import Diagnostic, ModelError, Span
 from symflex.expressions import Name, Number, Product, Sum, names, names_among, number, product_of, sum_of
 from symflex.expressions.nodes import nodes
 from symflex.model.complex_values import with_real_values
-from symflex.model.model import IMAGINARY, J, Model, ModelParameter
+from symflex.model.model import IMAGINARY, J, Model, ModelParameter, NamedExpressions
 
 if TYPE_CHECKING:
-    from symflex.expressions import Expression
     from symflex.library.elements import Element
     from symflex.model.network import Draft
     from symflex.model.reading import Reader
@@ -82,9 +81,7 @@ def _uses(draft: Draft) -> Iterator[tuple[Span | None, bool]]:
         yield from ((n.span, False) for n in names(expression) if n == Name(IMAGINARY))
 
 
-def with_loss(
-    element: Element, values: tuple[tuple[str, Expression], ...]
-) -> tuple[tuple[str, Expression], ...]:
+def with_loss(element: Element, values: NamedExpressions) -> NamedExpressions:
     """Return an element's values with its stiffnesses times ``1 + j*eta_s``."""
     factor = dict(values).get(LOSS_FACTOR)
     if factor is None or (isinstance(factor, Number) and not factor.value):

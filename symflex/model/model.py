@@ -21,6 +21,7 @@ from symflex.quantities import Dimension
 PI_NEARLY = Fraction(314159265358979323846264338328, 10**29)
 """Pi to 30 digits: signs, and the limits of a plot or search band, need no exact one."""
 Assumption = Literal["positive", "nonnegative", "real"]
+NamedExpressions = tuple[tuple[str, Expression], ...]  # in order, as an element has values
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,13 +138,13 @@ class PlacedElement:
     element: Element
     nodes: tuple[tuple[str, tuple[NodeReference, ...]], ...]
     domains: tuple[tuple[str, Placing], ...]
-    values: tuple[tuple[str, Expression], ...]
+    values: NamedExpressions
     span: Span | None = field(default=None, compare=False, repr=False)
     choices: tuple[tuple[str, str], ...] = ()
     latex: str = ""  # what it is called in a drawing
 
     @property
-    def all_values(self) -> tuple[tuple[str, Expression], ...]:
+    def all_values(self) -> NamedExpressions:
         """The values, and of an angle in the plane the cosine and sine by which it enters."""
         if not any(p.is_direction for p in self.element.parameters):
             return self.values
@@ -193,7 +194,7 @@ class FieldProblem:
 class OperatingPoint:
     """Values at rest, the nonlinear equations that hold there, and what became of them."""
 
-    values: tuple[tuple[str, Expression], ...]  # by name, "x'" for a rate
+    values: NamedExpressions  # by name, "x'" for a rate
     equations: tuple[Equation, ...]  # as written
     linear: tuple[Equation, ...]  # of the deviations
     # Of Lagrange's equations the coordinates, and in their order the matrices of mass, damping and stiffness.
@@ -219,7 +220,7 @@ class PlacedBlock:
 
     name: str
     block: BlockType | None
-    values: tuple[tuple[str, Expression], ...] = ()
+    values: NamedExpressions = ()
     submodel: Model | None = None
     tf: tuple[str, str] | None = None
     span: Span | None = field(default=None, compare=False, repr=False)
@@ -271,7 +272,7 @@ class Analysis:
     data_end: Fraction | None = None
     modes: int | None = None
     digits: int | None = None
-    print: tuple[tuple[str, Expression], ...] = ()
+    print: NamedExpressions = ()
     prefer: tuple[Expression, ...] = ()  # dimensionless groups
 
 
@@ -324,7 +325,7 @@ class Published:
 
     tf: tuple[str, str]
     expression: Expression
-    where: tuple[tuple[str, Expression], ...] = ()
+    where: NamedExpressions = ()
     scale: Expression | None = None
     source: str = ""
     span: Span | None = field(default=None, compare=False, repr=False)

@@ -19,6 +19,7 @@ from symflex.model.model import (
     FieldProblem,
     Input,
     ModelParameter,
+    NamedExpressions,
     NetworkNode,
     NodeReference,
     Output,
@@ -53,7 +54,7 @@ class DraftElement:
     name: str
     element: Element
     nodes: tuple[tuple[Port, tuple[NodeReference, ...]], ...]
-    values: tuple[tuple[str, Expression], ...]
+    values: NamedExpressions
     span: Span
     choices: tuple[tuple[str, str], ...] = ()
     latex: str = ""
@@ -156,7 +157,7 @@ def _values(
     element: Element,
     choices: Mapping[str, str],
     meant: frozenset[str],
-) -> tuple[tuple[str, Expression], ...] | None:
+) -> NamedExpressions | None:
     """Return an expression for every parameter that goes with the choices; ``None`` when one is wrong."""
     who = f"{element.type_name} '{entry.key}'"
     given: dict[str, Expression] = {}

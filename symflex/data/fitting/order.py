@@ -226,7 +226,10 @@ def chosen_order(
     by_order = {one.order: one for one in tried}
     wanted = [s for s in scores if modes is None or s.count == modes]
     if not wanted:
-        reasons.append(too_few(thin, modes or 0, max(s.count for s in scores)))
+        low, high = (value / (2 * np.pi) for value in thin.band)
+        band = f"{' over the base' if thin.has_base else ''} between {low:.4g} and {high:.4g} Hz"
+        most = max(s.count for s in scores)
+        reasons.append(f"{modes} resonances were requested, and the best fit has {most}{band}")
         wanted = scores
     given_up: list[tuple[Score, Candidate]] = []
     result: Candidate | None = None
@@ -371,14 +374,6 @@ def _thorough(thin: FitProblem, quick: Candidate, kind: str) -> Candidate:
 
 def _value(score: Score, criterion: str) -> float:
     return score.bic if criterion == "bic" else score.aicc
-
-
-def too_few(problem: FitProblem, count: int, reached: int) -> str:
-    """Return what is said where no fit has as many resonances in the band as asked for."""
-    low, high = (value / (2 * np.pi) for value in problem.band)
-    over = " over the base" if problem.has_base else ""
-    band = f"between {low:.4g} and {high:.4g} Hz"
-    return f"{count} resonances were requested, and the best fit has {reached}{over} {band}"
 
 
 def _negligible(problem: FitProblem) -> float:

@@ -69,17 +69,11 @@ def fit_specification(fit: ResonanceFit, folder: str | Path, loop: str | None = 
 def _written(
     fit: ResonanceFit,
     folder: str | Path,
-    taken: Collection[str] = (),
-    copied: Mapping[str, object] | None = None,
-    loop: str | None = None,
+    taken: Collection[str],
+    copied: Mapping[str, object] | None,
+    loop: str | None,
 ) -> str:
-    """Return the text of a specification with the fitted functions.
-
-    Frequencies are written in Hz and damping ratios as they are, with nine digits and their standard errors.
-    Zeros in the right half-plane have a negative damping ratio. Names of the base's parameters are ``taken``:
-    they mean something else. The base is ``copied`` as nested values, or referred to by a ``model`` block
-    from the folder.
-    """
+    """Return the text; names of the base, ``copied`` as nested values or a ``model`` block, are ``taken``."""
     modes, errors = fit.resonances, fit.standard_errors()
     prefix = _prefix(taken)
     outputs = _output_names(fit)
@@ -164,9 +158,10 @@ class _Names:
         return poles | {name: self.parameter(f"{name}{number}") for name in ("omega_z", "zeta_z")}
 
 
-def _pairs(
-    fit: ResonanceFit, response: int, errors: Resonances, names: _Names
-) -> tuple[dict[str, object], dict[str, object], list[str]]:
+_Parts = tuple[dict[str, object], dict[str, object], list[str]]  # parameters, blocks, factors
+
+
+def _pairs(fit: ResonanceFit, response: int, errors: Resonances, names: _Names) -> _Parts:
     """Return parameters of the pairs of zeros, blocks of the resonances, and both as factors."""
     modes = fit.resonances
     parameters: dict[str, object] = {}
@@ -188,12 +183,11 @@ def _pairs(
     return parameters, blocks, factors
 
 
-def _single(
-    fit: ResonanceFit, response: int, errors: Resonances, names: _Names
-) -> tuple[dict[str, object], list[str]]:
-    """Return parameters and factors of the single real pole and the single real zero."""
+def _beside(fit: ResonanceFit, response: int, errors: Resonances, names: _Names) -> _Parts:
+    """Return parts of what stands beside the pairs: a real pole and a real zero, lag and delay."""
     modes = fit.resonances
     parameters: dict[str, object] = {}
+    blocks: dict[str, object] = {}
     factors: list[str] = []
     corner = modes.real_z[response]
     if np.isfinite(corner):
@@ -204,16 +198,6 @@ def _single(
         name = f"{names.prefix}omega_r"
         parameters[name] = _frequency(pole, error, "real pole")
         factors.append(f"(1/(1 + s/(2*pi*{name})))")
-    return parameters, factors
-
-
-def _beside(
-    fit: ResonanceFit, response: int, errors: Resonances, names: _Names
-) -> tuple[dict[str, object], dict[str, object], list[str]]:
-    """Return parameters, blocks and factors of what stands beside the pairs, lag and delay among it."""
-    parameters, factors = _single(fit, response, errors, names)
-    blocks: dict[str, object] = {}
-    modes = fit.resonances
     if fit.problem.free.lag:
         name, value = names.parameter("T_sensor"), modes.lag[response]
         parameters[name] = _time(value, errors.lag[response], "lag of the sensor")
