@@ -129,13 +129,7 @@ class Budget:
         return self.seconds is not None or (self._outer is not None and self._outer.is_timed)
 
     def spend(self) -> None:
-        """Raise an error if time or memory is used up.
-
-        Raises
-        ------
-        BudgetError
-            SF506 when the time is over, SF504 when the memory is used up.
-        """
+        """Raise BudgetError if time (SF506) or memory (SF504) is used up."""
         if self._outer is not None:
             self._outer.spend()
         if self.seconds is None and self.memory is None:
@@ -175,13 +169,7 @@ def entered_budget() -> Budget:
 
 
 def spend() -> None:
-    """Go on if the budget that is entered has time and memory left.
-
-    Raises
-    ------
-    BudgetError
-        SF506 when the time is over, SF504 when the memory is used up.
-    """
+    """Go on if the budget that is entered has time and memory left; BudgetError else."""
     entered = _ENTERED.get()
     if entered is not None:
         entered.spend()

@@ -24,15 +24,6 @@ class ProgressBar:
     It is drawn on terminals only, not before a second has passed, and not when ``NO_COLOR`` is set or the
     terminal is a ``dumb`` one: both stand for lines that are not rewritten.
 
-    Parameters
-    ----------
-    stream : file, optional
-        stderr by default.
-    clock : callable
-        Returns the time [s].
-
-    Examples
-    --------
     >>> from io import StringIO
     >>> class Screen(StringIO):
     ...     def isatty(self):
@@ -52,15 +43,7 @@ class ProgressBar:
         self._drawn = 0
 
     def report(self, done: float, text: str) -> None:
-        """Say how far the computation is.
-
-        Parameters
-        ----------
-        done : float
-            The part done, from 0 to 1; what lies outside is drawn as the nearest, what is not a number as 0.
-        text : str
-            What is being done; one line, cut where it does not fit.
-        """
+        """Say which part of the computation is done, from 0 to 1, and what is being done."""
         if not self._is_shown:
             return
         now = self._clock()
@@ -104,11 +87,6 @@ class Waiting:
 
     A timer of the process draws it, as a computation that reports nothing calls nothing. Only a command that
     was started as a program has one, and on terminals only.
-
-    Parameters
-    ----------
-    what : str
-        The name of the command.
     """
 
     def __init__(self, what: str) -> None:

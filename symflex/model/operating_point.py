@@ -25,7 +25,7 @@ from flint import arb, arb_mat
 
 from symflex.algebra import FUNCTIONS, LAPLACE
 from symflex.balls import precision, stays_inside
-from symflex.errors import SpecError, nearest
+from symflex.errors import Span, SpecError, nearest
 from symflex.expressions import (
     Attribute,
     Derivative,
@@ -54,17 +54,14 @@ from symflex.expressions import (
 from symflex.expressions.derivative import SLOPES, derivative, simplified, without_brackets
 from symflex.expressions.nodes import Call, Differentiated
 from symflex.expressions.trigonometric import shorter
-from symflex.model.model import Definition, OperatingPoint
-from symflex.model.reading import literal_value
+from symflex.model.model import Definition, OperatingPoint, Signal
+from symflex.model.reading import Reader, literal_value
 from symflex.model.scope import nearest_name
 from symflex.model.units import lower
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
 
-    from symflex.errors import Span
-    from symflex.model.model import Signal
-    from symflex.model.reading import Reader
     from symflex.model.spec import TableValue
 
 SOLVE = "solve"
