@@ -110,8 +110,6 @@ class Arithmetic:
         roots, sums = [f"root({p})" for p in g.primes], [f"sum({i})" for i in range(len(g.sums))]
         return Ring((*g.names, *roots, *sums, UNIT, *waves, HOLE))
 
-    # ------------------------------------------------------------------------------------------ values
-
     def number(self, value: Fraction | int) -> Factored:
         """Return a rational number."""
         return Factored.number(self.ring, value)
@@ -301,8 +299,6 @@ class Arithmetic:
             terms[tuple(exponents[:count])] = int(coefficient)
         return g.plain.context.from_dict(terms)
 
-    # --------------------------------------------------------------------------------------- functions
-
     def function(self, name: str, argument: Factored) -> Factored:
         """Return ``exp``, ``sin``, ``cos``, ``tan``, ``sinh``, ``cosh``, ``tanh`` or ``sqrt`` of a value."""
         if name == "sqrt":
@@ -411,8 +407,6 @@ class Arithmetic:
             else:
                 key.append((name, Fraction(exponent, g.order)))
         return tuple(key), number
-
-    # ------------------------------------------------------------------------------------ normal form
 
     @cached_property
     def _relations(self) -> tuple[tuple[int, int, Factored], ...]:

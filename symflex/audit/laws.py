@@ -55,9 +55,6 @@ def check_laws(reading: FormulaReading | None, numbers: Numbers | None) -> tuple
     return tuple(check for check in checks if check is not None)
 
 
-# ------------------------------------------------------------------------------------- exactly, by factors
-
-
 def _poles(reading: FormulaReading, printed: LowestTerms, derived: LowestTerms) -> LawCheck:
     extra = _without(printed.poles, derived.poles)
     missing = _without(derived.poles, printed.poles)
@@ -120,9 +117,6 @@ def _expression_of(reading: FormulaReading, value: Factored) -> Expression | Non
     above = polynomial_expression(reading.field, value.numerator())
     below = polynomial_expression(reading.field, value.denominator())
     return None if above is None or below is None else quotient(above, below)
-
-
-# ------------------------------------------------------------------------------------- on the imaginary axis
 
 
 def _phase(numbers: Numbers) -> LawCheck | None:

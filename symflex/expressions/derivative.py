@@ -54,16 +54,8 @@ SLOPES: Final[Mapping[str, Callable[[Call, Expression], Expression]]] = {
 }
 """The derivative of every function by its argument."""
 AT_ZERO: Final = {
-    "sqrt": 0,
-    "exp": 1,
-    "sin": 0,
-    "cos": 1,
-    "tan": 0,
-    "sinh": 0,
-    "cosh": 1,
-    "tanh": 0,
-    "atan": 0,
-    "abs": 0,
+    **dict.fromkeys(("sqrt", "sin", "tan", "sinh", "tanh", "atan", "abs"), 0),
+    **dict.fromkeys(("exp", "cos", "cosh"), 1),
 }
 
 

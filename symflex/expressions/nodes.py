@@ -269,8 +269,7 @@ def quotient(numerator: Expression, denominator: Expression) -> Expression:
 def power(base: Expression, exponent: Expression | int) -> Expression:
     """Return a power; the sign of the base leaves it when the exponent is an integer.
 
-    ``x^0`` is 1 for every x, as in polynomials. Raises ZeroDivisionError when the base is the number zero and
-    the exponent a negative number.
+    ``x^0`` is 1 for every x, as in polynomials. It may raise ZeroDivisionError.
 
     >>> from symflex.expressions.nodes import Name
     >>> power(negative(Name("s")), 3)
@@ -372,8 +371,7 @@ def fold(
 
     What is not given is done with Python's operators, sums from zero and products from one. ``name`` takes a
     name, or ``owner.name`` for an attribute; ``power`` the base's value and the exponent, which is left as it
-    is written; ``call`` a call and its argument's value; the others values. Raises TypeError on what has no
-    value by itself, such as an equation.
+    is written; ``call`` a call and its argument's value; the others values. An equation has no value.
 
     >>> x = Name("x")
     >>> fold(Sum((Power(x, Number(Fraction(2))), Negative(x))), number=Fraction, name={"x": Fraction(3)}.get,

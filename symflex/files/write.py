@@ -20,9 +20,8 @@ def write_atomically(path: Path, data: bytes) -> None:
     """Write a file so that at every moment its path holds the old content or the new, never a part.
 
     The data go to a temporary file in the same folder, reach the disk, and then take the place of ``path``.
-    An existing file keeps its permissions; a new one gets those of the process's umask. The folder exists,
-    and the path is not a symbolic link, a folder or a device. Raises UsageError: SF903, with the reason; the
-    old content, if any, is untouched and no temporary file remains.
+    An existing file keeps its permissions; a new one gets those of the process's umask. SF903 with the reason
+    leaves the old content, if any, and no temporary file.
 
     >>> write_atomically(Path("no/such/folder/a.svg"), b"")
     Traceback (most recent call last):

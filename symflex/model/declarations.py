@@ -169,11 +169,7 @@ def read_label(reader: Reader, table: TableValue | None, what: str) -> str:
 
 
 def with_formulas_defined(sections: Mapping[str, TableValue | None]) -> dict[str, TableValue | None]:
-    """Return the sections with formulas among the parameters, as ``A = "b*h"``, among the definitions.
-
-    A formula contains names that are declared, and no others. What may be a quantity written wrongly, as
-    ``2*m``, and what has no name that can be, stays, to be refused.
-    """
+    """Return the sections with formulas of declared names among the definitions, not the parameters."""
     parameters, definitions = sections["parameters"], sections["definitions"]
     if parameters is None:
         return dict(sections)

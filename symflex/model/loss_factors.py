@@ -112,11 +112,7 @@ def has_loss_factors(model: Model) -> bool:
 
 
 def check_causal(model: object, what: str) -> None:
-    """Refuse what j or roots of s in a model do not allow; other subjects than models pass.
-
-    Loss factors hold on s = j omega alone. Motion with a root of s decays along a branch cut, besides poles.
-    Raises ModelError: SF251 the model contains j; SF910 a root of s.
-    """
+    """Refuse what j (SF251) or roots of s (SF910) in a model do not allow; other subjects pass."""
     if getattr(model, "root", None) is not None and what not in WITH_ROOTS:
         message = f"{what} is not available yet for models with roots of s, such as sqrt(s)"
         hint = "formulas, frequency responses, responses in time, poles, zeros, stable gains and code are"

@@ -104,12 +104,7 @@ def load_model(
     *,
     allow_outside: Iterable[str | Path] = (),
 ) -> Model:
-    """Parse and resolve a text, reporting syntax and meaning errors together.
-
-    Files of ``model`` blocks are found relative to ``source.name``, in its folder and those of
-    ``allow_outside``; ``ancestors`` are the files whose blocks led here, ``loads`` what was read for blocks.
-    Raises SpecError with every problem found, in the order of the text.
-    """
+    """Parse and resolve a text, reporting syntax and meaning errors together in the order of the text."""
     spec, syntax = parse_with_recovery(source)
     own = ancestors or (Path(source.name).resolve(),)
     try:

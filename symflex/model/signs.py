@@ -334,11 +334,7 @@ def ranged_values(draft: Draft | Model) -> Iterator[RangedValue]:
 def check_ranges(
     reader: Reader, draft: Draft, line: Line, unsound: set[Span | None], *, is_along: bool
 ) -> None:
-    """Note values of distributed parts that are zero or negative where they cannot be.
-
-    They are those that vary along x, or the others. Signs are told by ``line``, from values and what is
-    assumed of parameters. Places in ``unsound`` hold a mistake already; those found here are added.
-    """
+    """Note values of distributed parts, along x or others, that are zero or negative where they cannot be."""
     for ranged in ranged_values(draft):
         expression = ranged.expression
         if (ranged.is_end or ranged.length is not None) != is_along:

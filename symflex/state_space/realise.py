@@ -148,9 +148,6 @@ def _owner(name: Expression) -> str:
     return ""
 
 
-# ------------------------------------------------------------------------------------------ equations
-
-
 @dataclass(frozen=True, eq=False)
 class _Rows:
     """The equations with columns by number: unknowns first, then inputs."""
@@ -293,9 +290,6 @@ def _weights(rows: _Rows, model: Model, shown: set[str]) -> list[tuple[int, int]
 
     ranks = {j: rank for rank, j in enumerate(sorted(range(len(rows.unknowns)), key=readiness))}
     return [(weight(v), ranks[j]) for j, v in enumerate(rows.unknowns)]
-
-
-# --------------------------------------------------------------------------------------------- states
 
 
 @dataclass(frozen=True, eq=False)

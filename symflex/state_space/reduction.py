@@ -32,11 +32,7 @@ FEW = 2  # terms of a combination that is named after them
 
 
 def minimal(system: StateSpace) -> StateSpace:
-    """Return the controllable and observable part.
-
-    It is minimal for almost all values of its parameters; special values may hide more. SF502 when the
-    combinations of states become too large, SF401 when it is not known how roots depend on each other.
-    """
+    """Return the controllable and observable part, which is minimal for almost all values of parameters."""
     used = system.ring.used_in(
         p for _, rows, _ in system.matrices for r in rows for v in r.values() for p in (v.num, v.den)
     )

@@ -184,11 +184,7 @@ class _System:
 
 
 def _pairs(coefficients: Real, middle: float, count: int) -> tuple[Real, Real, float] | None:
-    """Return frequencies and damping ratios of the pairs of zeros, and the corner of one more real zero.
-
-    They are those of a polynomial with these coefficients of ascending powers of s/middle. They are
-    ``None`` if it has not the degree it seems to have, or more than ``count`` pairs.
-    """
+    """Return the zeros of a polynomial in s/middle as pairs and one real corner, ``None`` if too many."""
     if coefficients[0] == 0 or coefficients[-1] == 0 or not np.isfinite(coefficients).all():
         return None
     roots = np.roots(coefficients[::-1]) * middle

@@ -64,9 +64,6 @@ LEAST_TURNS = 2.0  # of the phase at the highest line: how far the delays tried 
 MOST_LINES = 300  # lines on which delays are compared
 
 
-# ------------------------------------------------------------------ from the magnitude alone
-
-
 def find_modes(problem: FitProblem) -> list[int]:
     """Return the lines of the first response's peaks over its base, the most prominent first."""
     level = np.log(np.abs(problem.lines[0].ratio))
@@ -172,9 +169,6 @@ def _noise(level: Real) -> float:
 
 def _smoothed(level: Real) -> Real:
     return savgol_filter(level, SMOOTHED, 2) if level.size > SMOOTHED else level
-
-
-# ------------------------------------------------------------------ from rational approximation
 
 
 def poles_from_vector_fitting(problem: FitProblem, order: int) -> list[Complex]:
@@ -415,9 +409,6 @@ def _aaa_poles(omega: Values, values: Complex, degree: int) -> list[tuple[float,
         if np.isfinite(residue):
             poles.append((float(abs(residue) / max(abs(pole.real), 1e-9 * abs(pole))), complex(pole)))
     return poles
-
-
-# ------------------------------------------------------------------ with which delay
 
 
 def with_delays(problem: FitProblem, count: int | None) -> FitProblem:

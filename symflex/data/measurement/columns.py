@@ -362,11 +362,7 @@ def columns_asked(asked: str, width: int, names: Sequence[str] = ()) -> list[Col
 def assembled(
     columns: Sequence[DataColumn], file: str, header: Span | None, *, is_asked: bool = False
 ) -> tuple[list[Assembled], list[str]]:
-    """Return the responses that columns make, and what was guessed.
-
-    SF602 where columns are missing, ambiguous or in an unknown unit; SF603 where a number is missing. Without
-    a phase, that of a minimum-phase function is taken for a power spectrum, and where ``is_asked``.
-    """
+    """Return the responses that columns make, and what was guessed, as a phase that is not there."""
     guesses: list[str] = []
     columns = _with_frequency(list(columns), file, header, guesses, is_asked=is_asked)
     columns = _over_input(columns, guesses)

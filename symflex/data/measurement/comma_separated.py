@@ -118,11 +118,7 @@ def _place(places: Mapping[str, Callable[[int], Span | None]], index: int, kind:
 
 
 def _listed(table: TextTable) -> _Rewritten | None:
-    """Return the text with columns of values that a simulator lists one below the other; None if it does not.
-
-    This is the raw file of SPICE in text: ``Variables:``, then their names, ``Values:``, then for each point
-    its number and the value of each variable.
-    """
+    """Return SPICE's raw file in text, which lists values one below the other, as columns; else None."""
     head, _, values = table.source.text.partition("\nValues:\n")
     names = re.findall(r"^[ \t]*\d+[ \t]+(\S+)", head.partition("\nVariables:\n")[2], re.M)
     cells = values.split()

@@ -179,7 +179,7 @@ SMALLEST, LARGEST = 1e-100, 1e100
 def checked_response(
     response: MeasuredResponse, file: str, span_of: Callable[[int, str], Span | None]
 ) -> MeasuredResponse:
-    """Return a response whose lines are in order, at positive frequencies, and hold a number each."""
+    """Return a response whose lines are in order, at positive frequencies, with a number each."""
     if response.frequency_hz.size > MAX_LINES:
         raise DataError(Diagnostic("SF607", f"'{file}' has more than {MAX_LINES} lines"))
     lines, said = _ordered(response, span_of)

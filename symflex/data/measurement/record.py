@@ -105,11 +105,7 @@ class TimeRecord:
 
 
 def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecord | None:
-    """Return the record that a file contains, ``None`` if its columns do not say time.
-
-    ``asked`` is what ``--columns`` says: ``t,u,y``, ``t_ms,-,u,y``, ``u,y,dt=0.01``, ``t=NAME,y=NAME``.
-    SF602 to SF605: columns without a value, what is no number, times that do not increase, too few samples.
-    """
+    """Return the record that a file contains, ``None`` if its columns, or those ``asked``, say no time."""
     given = [word.strip() for word in asked.split(",")] if asked else []
     interval = next((word for word in given if word.lower().startswith("dt=")), "")
     words = [word for word in given if word != interval]

@@ -267,8 +267,6 @@ class _Netlist:
                 "a name begins with R, L, C, V, I, E, F, G, H, K or X",
             )
 
-    # ------------------------------------------------------------------------------ names and values
-
     def _name(self, word: str, scope: _Scope) -> str:
         return scope.prefix + re.sub(r"\W", "_", word)
 
@@ -337,8 +335,6 @@ class _Netlist:
             self.circuit.parameters[name] = value
             return name
         return value
-
-    # ------------------------------------------------------------------------------ components
 
     def _last(self, line: Card, at: int, letter: str) -> str:
         """Return the value from this word on, as in ``R=1k``; refuse what would change it."""
@@ -514,8 +510,6 @@ class _Netlist:
             line, name, inputs, (out, "ground"), self._value(line, gain, scope) if gain else "", more
         )
 
-    # ------------------------------------------------------------------------------ directives
-
     def _directive(self, line: Card, scope: _Scope) -> None:
         word = line.words[0][1:].lower()
         if word in ("param", "params"):
@@ -556,8 +550,6 @@ class _Netlist:
                 self.circuit.outputs["V_" + "_".join(shown)] = sign + " - ".join(shown)
         elif len(names) == 1:
             self.circuit.outputs[f"I_{self._name(names[0], scope)}"] = f"{self._name(names[0], scope)}.i"
-
-    # ------------------------------------------------------------------------------ the whole
 
     def finished(self, lines: Sequence[Card]) -> Circuit:
         """Return the circuit with its sources as inputs, or at rest, and with outputs."""
