@@ -32,8 +32,7 @@ SAMPLES, FREQUENCIES = 1000, 200
 at which responses are compared, over four decades up to half of the sampling frequency."""
 MEASURE_BITS = 600
 """Precision of the run that counts as exact: differences of close poles cost a few hundred bits."""
-LARGE = 1e-9
-"""Relative error from which the user is warned: the best converters, of 24 bits, resolve 6e-8."""
+LARGE = 1e-9  # relative error from which the user is warned: the best converters, of 24 bits, resolve 6e-8
 SMALLEST = float_info.min / float_info.epsilon
 """Share of the largest coefficient below which another one is less than its rounding."""
 PAIR = 2  # poles of a section of second order, and zeros
@@ -74,14 +73,7 @@ class DifferenceEquation:
         return sum(len(section.below) for section in self.sections)
 
     def assignments(self, number: Callable[[float], str] = repr) -> list[tuple[str, str]]:
-        """Return targets and values of one step, of the input x and states w; x and y are the output then.
-
-        >>> from symflex import loads
-        >>> lag = loads('symflex = 1' + chr(10) + 'inputs.u = {}' + chr(10) + 'outputs.y = "u/(s + 2)"')
-        >>> sampled = lag.transfer_function("y", "u").bind().discretise("1", "tustin")
-        >>> difference_equation(sampled).assignments()
-        [('y', '0.25 * x + w[0]'), ('w[0]', '0.25 * x'), ('x', 'y')]
-        """
+        """Return targets and values of one step, of the input x and states w; x and y are the output then."""
 
         def total(products: Sequence[tuple[float, str]], names: Sequence[str]) -> str:
             signed = [
@@ -161,24 +153,8 @@ class DifferenceEquation:
 def difference_equation(sampled: SampledTransferFunction, *, is_direct: bool = False) -> DifferenceEquation:
     """Return the sections of a sampled transfer function, their coefficients rounded once.
 
-    One section contains everything where ``is_direct``, or poles or zeros cannot be separated.
-
-    Raises
-    ------
-    ModelError
-        SF233 where a coefficient does not fit in double precision.
-
-    Examples
-    --------
-    >>> from fractions import Fraction
-    >>> from symflex import loads
-    >>> from symflex.analysis.sampling import sampled_transfer_function
-    >>> from symflex.state_space.sampled import Sampling
-    >>> tf = loads('symflex = 1' + chr(10) + 'inputs.u = {}' + chr(10) + 'outputs.y = "u*(s + 1)/s"')
-    >>> bound = tf.transfer_function("y", "u").bind().bound
-    >>> made = difference_equation(sampled_transfer_function(bound, Sampling(Fraction(1, 10), "tustin")))
-    >>> made.sections  # 1.05 and 0.95 over 1 - z^-1: a pole at 1 stays there
-    (FilterSection(above=(1.05, -0.95), below=(-1.0,)),)
+    One section holds everything where ``is_direct``, or poles or zeros cannot be separated. Raises
+    ModelError: SF233 where a coefficient does not fit in double precision.
     """
     with precision(sampled.bits):
         order = len(sampled.poles)

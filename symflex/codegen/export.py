@@ -79,8 +79,7 @@ class Exporter(Protocol):
     ) -> Export:
         """Return the file of a model's transfer functions.
 
-        ``stem`` is its name without suffix, empty for none. Where it ``is_alone`` there can be no other
-        files beside it: it has to serve without companions.
+        ``stem`` is its name without suffix, empty for none; where it ``is_alone`` it has no companions.
         """
         ...
 
@@ -243,20 +242,6 @@ class Language:
         Raises BudgetError: SF503 when a function's text would be too long; ModelError: SF233 when a number
         does not fit in double precision, SF229 and SF910 when a function without a short formula has no band
         form; UsageError: SF902 when ``stem`` cannot be the name of a companion.
-
-        >>> from symflex import pipeline
-        >>> from symflex.codegen.exporters import EXPORTERS
-        >>> model = pipeline.loads('''
-        ... symflex = 1
-        ... parameters = {m = "2 kg", b = "3 N*s/m"}
-        ... elements.body = {type = "mass", at = "x", m = "m"}
-        ... elements.damping = {type = "damper", between = ["x", "ground"], b = "b"}
-        ... inputs.F = {force = "x"}
-        ... outputs.V = "s*x"
-        ... ''')
-        >>> text = EXPORTERS["julia"].export(model, pipeline.derive_all(model), "cart").text
-        >>> next(line for line in text.splitlines() if line.startswith("function V_over_F("))
-        'function V_over_F(s::Number; m::Number = 2.0, b::Number = 3.0)'
         """
         contents = self.contents(model, tfs, stem, is_alone=is_alone, samples=samples)
         made = self.print(contents)

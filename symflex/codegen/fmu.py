@@ -32,8 +32,7 @@ from symflex.codegen.export import Export
 from symflex.codegen.module_text import identifiers
 from symflex.codegen.sampled import SampledLanguage, StepFile
 
-OLD = (1980, 1, 1, 0, 0, 0)
-"""When all files of an archive were written: the same model gives the same bytes."""
+OLD = (1980, 1, 1, 0, 0, 0)  # when all files of an archive were written: the same model gives the same bytes
 COMPILER = ("cc", "-shared", "-fPIC", "-O2", "-std=c99", "-ffp-contract=off", "-fvisibility=hidden")
 NOT_COMPILED = "no C compiler was found: the unit contains sources, but no binary"
 
@@ -42,9 +41,8 @@ def fmu(file: StepFile) -> Export:
     """Return the unit; that no compiler was found is a warning."""
     name = identifiers({"": file.stem or "model"}, {*KEYWORDS, *RESERVED})[""]
     source = _source(file)
-    statements = re.sub(
-        r"/\*.*?\*/", "", source, flags=re.DOTALL
-    )  # what the prose of a model does not change
+    # What the prose of a model does not change.
+    statements = re.sub(r"/\*.*?\*/", "", source, flags=re.DOTALL)
     token = sha256(statements.encode("utf-8", "replace")).hexdigest()[:32]
     source = f'#define TOKEN "{token}"\n{source}'
     built = (

@@ -18,7 +18,6 @@ from symflex.codegen.program import nodes as tree
 from symflex.codegen.program.evaluate import nearest_double
 
 _SUM, _PRODUCT, _SIGN, _POWER, LEAF = range(5)
-
 _GLUE = "\N{NO-BREAK SPACE}"
 
 

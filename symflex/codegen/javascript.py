@@ -47,15 +47,10 @@ NAMES = frozenset(
     """.split()
 )
 """What generated code uses, and names that a reader would miss."""
-
 PARTS = parts_of("javascript.js")
-
 RESERVED = KEYWORDS | NAMES | {name for names in PARTS for name in names}
-
 LONGEST = 60  # characters of an expression that is used more than once, from which it gets a name
-
 _SUM, _PRODUCT, _SIGN, _LEAF = range(4)
-
 _ATOM = re.compile(r"\w+|-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 
 
@@ -85,14 +80,6 @@ def _negative(x: Part) -> Part:
     if x is not None and x.binding == _SIGN:
         return Real(x.text[1:])
     return None if x is None else Real(f"-{x.within(_LEAF)}", _SIGN)
-
-
-def _total(x: Part, y: Part) -> Part:
-    return _added(x, "+", y)
-
-
-def _difference(x: Part, y: Part) -> Part:
-    return _added(x, "-", y)
 
 
 def _added(x: Part, sign: str, y: Part) -> Part:
@@ -200,12 +187,13 @@ class PairBody:
     def assign(self, assignments: Sequence[tree.Assignment]) -> None:
         """Make constants."""
         for a in assignments:
+            wanted = a.name.replace("slope of ", "d_")
             if not isinstance(a.value, tree.Solutions | tree.SolutionSlopes):
-                self.values[a.name] = self.pair(_short(a.name), self.value(a.value))
+                self.values[a.name] = self.pair(wanted, self.value(a.value))
                 continue
             given = [self._array(a.value.coefficients), str(a.value.terms)]
             given += [self._array(a.value.slopes)] if isinstance(a.value, tree.SolutionSlopes) else []
-            name = self.values[a.name] = self.name(_short(a.name))
+            name = self.values[a.name] = self.name(wanted)
             self.say(f"const {name} = solutions({', '.join(given)});")
 
     def _array(self, nodes: Sequence[tree.CodeNode]) -> str:
@@ -264,9 +252,9 @@ class PairBody:
     def _sum(self, first: tree.CodeNode, rest: Sequence[tree.CodeNode]) -> ComplexParts:
         result = self.value(first)
         for term in rest:
-            step, node = (_difference, term.operand) if isinstance(term, tree.Negate) else (_total, term)
+            sign, node = ("-", term.operand) if isinstance(term, tree.Negate) else ("+", term)
             z = self.value(node)
-            result = ComplexParts(step(result.re, z.re), step(result.im, z.im))
+            result = ComplexParts(_added(result.re, sign, z.re), _added(result.im, sign, z.im))
         return result
 
     def multiply(self, x: ComplexParts, y: ComplexParts) -> ComplexParts:
@@ -276,8 +264,8 @@ class PairBody:
         elif (x.re and x.im) or (y.re and y.im):
             single, other = (x, y) if not (x.re and x.im) else (y, x)
             x, y = self.pair("t_1", single, LONGEST // 4), other
-        re = _difference(_product(x.re, y.re), _product(x.im, y.im))
-        return ComplexParts(re, _total(_product(x.re, y.im), _product(x.im, y.re)))
+        re = _added(_product(x.re, y.re), "-", _product(x.im, y.im))
+        return ComplexParts(re, _added(_product(x.re, y.im), "+", _product(x.im, y.re)))
 
     def divide(self, x: ComplexParts, y: ComplexParts) -> ComplexParts:
         """Return a quotient."""
@@ -324,11 +312,6 @@ class PairBody:
         """Write complex numbers into an array."""
         for i, x in enumerate(x for z in values for x in (z.re, z.im)):
             self.say(f"into[{i}] = {_text(x)};")
-
-
-def _short(name: str) -> str:
-    """Return what is wanted as the name of a constant."""
-    return name.replace("slope of ", "d_")
 
 
 @dataclass(frozen=True)
@@ -464,10 +447,9 @@ def javascript_module(contents: Contents) -> Export:
     blocks += called_parts(code, PARTS, ["imaginary", "offered"])
     rows = JAVASCRIPT_OUTLINE.function_rows({m.tf.name: public[m.key] for m in members})
     table = ["export const TRANSFER_FUNCTIONS = Object.freeze({", *rows, "});", ""]
-    verified = [m.verification for m in members]
-    heading = JAVASCRIPT_OUTLINE.heading(
-        "Transfer functions of a linear system.", model, [INTRODUCTION], verified
-    )
+    verified = (m.verification for m in members)
+    title = "Transfer functions of a linear system."
+    heading = JAVASCRIPT_OUTLINE.heading(title, model, [INTRODUCTION], verified)
     return Export("\n".join([*comment(heading), "", "\n".join(blocks), *table]))
 
 

@@ -32,7 +32,6 @@ NAMES = frozenset(
     "FREQUENCY_RESPONSES".split()
 )
 """What generated code uses, and names that a reader or the module itself would miss."""
-
 RESERVED = KEYWORDS | NAMES | {"s"}
 
 
@@ -129,16 +128,12 @@ class JuliaFunctions(PrivateFunctions):
 
 
 def julia_module(contents: Contents) -> Export:
-    """Return a module with one function ``OUT_over_IN(s; parameter = default, ...)`` per transfer function.
-
-    Its name is made from the file's, or from the model's title.
-    """
+    """Return a module, named by its file or the model's title, with one function per transfer function."""
     model, members = contents.model, contents.members
     main = module_name(contents.stem or model.title)
     public, parameters = contents.names(RESERVED | {main})
     taken = {*RESERVED, main, *public.values()}
-    outline = JULIA_OUTLINE
-    rows = outline.parameter_rows(model, parameters)
+    rows = JULIA_OUTLINE.parameter_rows(model, parameters)
     table = ["const PARAMETERS = (", *rows, ")"] if rows else ["const PARAMETERS = NamedTuple()"]
     docs = "Values in SI units, units and descriptions of the model's parameters."
     blocks, code = ["\n".join([*_docstring([docs]), *table, ""])], ""
@@ -150,9 +145,8 @@ def julia_module(contents: Contents) -> Export:
         code += "\n".join(private)
     blocks += called_parts(code, parts_of("julia.jl"))
     for name, is_response in (("TRANSFER_FUNCTIONS", False), ("FREQUENCY_RESPONSES", True)):
-        rows = outline.function_rows(
-            {m.tf.name: public[m.key] for m in members if m.is_response == is_response}
-        )
+        named = {m.tf.name: public[m.key] for m in members if m.is_response == is_response}
+        rows = JULIA_OUTLINE.function_rows(named)
         opening = f"const {name} = Dict{{String, Function}}("
         blocks.append("\n".join([opening, *rows, ")", ""] if rows else [f"{opening})", ""]))
     written = (
@@ -160,7 +154,7 @@ def julia_module(contents: Contents) -> Export:
         "with a dot, as in OUT_over_IN.(s), it takes arrays."
     )
     verified = [m.verification for m in members if not m.is_response]
-    heading = outline.heading("Transfer functions of a linear system.", model, [written], verified)
+    heading = JULIA_OUTLINE.heading("Transfer functions of a linear system.", model, [written], verified)
     header = [*_docstring(heading), f"module {main}", ""]
     if public:
         first, *others = in_lines(", ".join(public.values()), WIDTH - len("export "))

@@ -28,7 +28,6 @@ LOOP_TITLES = {
 
 DEFAULT_FIGURES = {"bode": "Frequency responses", "poles_zeros": "Poles and zeros", "modes": "Lowest modes"}
 """Figures of kinds that the model asks for none of."""
-
 MOST_IN_A_FIGURE, TALLEST_MM = 6, 225.0
 """Functions that a figure holds which the model did not ask for, and its height on a page, with its words."""
 

@@ -50,18 +50,12 @@ FUNCTIONS = frozenset(
     "acos cumsum diff fliplr floor interp1 inv isequal ismember kron nchoosek num2cell prod sort".split()
 )
 """What generated code uses, and constants that a reader would miss."""
-
 WORDS = frozenset({"s", "G", "given", "value"})
 """Variables of the generated code; parameters leave them to it."""
-
 TOOLBOX = frozenset({"tf", "zpk", "ss", "frd", "roots"})  # what no function of the file may hide
-
 PARTS = parts_of("matlab.m")
-
 NAMES = frozenset({"default_parameters"}.union(*PARTS))  # names of the functions that others call
-
 RESERVED = KEYWORDS | FUNCTIONS | NAMES | WORDS
-
 TITLE_LENGTH, LONGEST_STEM = 30, 64
 """Characters of a title that a function is named by, and of a file's name that a message shows."""
 
@@ -71,14 +65,12 @@ EXPANSION = (
 )
 
 _LINK = re.compile(r"<(?=[A-Za-z/])")
-
 ROOM = WIDTH - 4  # columns of help texts
 
 OTHER_FIELDS = frozenset(
     "parameters units descriptions transfer_functions frequency_responses systems coefficients".split()
 )
 """Other fields of the struct that the main function returns."""
-
 SYSTEM_ROLES = ("system", "coefficients")  # the two functions of a rational transfer function
 
 
@@ -244,17 +236,8 @@ OUTLINE = Outline(ROOM, unset="no value", disarmed=_disarmed, formula="", argume
 # -------------------------------------------------------------------------------------------------- file
 
 
-def matlab_function_file(contents: Contents) -> Export:
-    """Return a function file; the struct that its main function returns has a handle per transfer function.
-
-    Its main function is called as the file is, or from the model's title. A warning says so when MATLAB
-    cannot call a file of that name.
-    """
-    return _File(contents).made()
-
-
 class _File:
-    """The file, and the names of everything in it."""
+    """The file, and the names of everything in it; its main function returns handles in a struct."""
 
     def __init__(self, contents: Contents) -> None:
         self.model, self.members = contents.model, contents.members
@@ -447,7 +430,7 @@ class _File:
 MATLAB = Language(
     ".m",
     "MATLAB and Octave function file, a handle per transfer function, verified likewise",
-    matlab_function_file,
+    lambda contents: _File(contents).made(),
 )
 
 

@@ -26,7 +26,7 @@ from typing import Final
 from symflex.codegen.export import Export
 from symflex.codegen.module_text import default_value, identifiers, inert, origin_lines, wrapped
 from symflex.codegen.state_space import StateEquations
-from symflex.expressions import Expression, Name, format_expression, product_of, substitute, sum_of
+from symflex.expressions import Name, format_expression, product_of, substitute, sum_of
 from symflex.model import Model
 from symflex.model.loss_factors import check_causal
 from symflex.state_space import realise
@@ -80,28 +80,19 @@ class ModelicaExporter:
         moving = [Name(named[f"state {n}"]) for n in groups["state"]]
         moving += [Name(named[f"input {n}"]) for n in groups["input"]]
 
-        def right(states: Vector, inputs: Vector) -> Expression:
+        def right(states: Vector, inputs: Vector) -> str:
             parts = {**states, **{len(system.states) + j: value for j, value in inputs.items()}}
             entries = (
                 (substitute(equations.entry(value), letters), moving[j]) for j, value in sorted(parts.items())
             )
-            return sum_of(product_of(pair) for pair in entries)
+            return format_expression(sum_of(product_of(pair) for pair in entries))
 
         lines = [f"model {title} {_string(model.title)}".rstrip()]
         lines += [f"  // {line}".rstrip() for line in origin_lines(model, WIDTH - 5)]
-        used = [
-            *(
-                ("der", named[f"state {x.name}"], right(a, b))
-                for x, a, b in zip(system.states, system.a, system.b, strict=True)
-            ),
-            *(
-                ("", named[f"output {x.name}"], right(c, d))
-                for x, c, d in zip(system.outputs, system.c, system.d, strict=True)
-            ),
-        ]
-        texts = [
-            f"{f'der({left})' if kind else left} = {format_expression(value)};" for kind, left, value in used
-        ]
+        derivatives = zip(system.states, system.a, system.b, strict=True)
+        texts = [f"der({named[f'state {x.name}']}) = {right(a, b)};" for x, a, b in derivatives]
+        results = zip(system.outputs, system.c, system.d, strict=True)
+        texts += [f"{named[f'output {x.name}']} = {right(c, d)};" for x, c, d in results]
         for back, (ahead, time) in late.items():
             by = format_expression(substitute(time, letters))
             delayed = f"delay({named[f'output {ahead}']}, {by})"

@@ -21,7 +21,6 @@ from symflex.transfer import AnyTransferFunction
 
 FORMULA_LENGTH = 1_600
 """Characters of a formula that a docstring shows: twenty lines, which fill a terminal of 24."""
-
 FORMULA_TERMS, KERNEL_TERMS, NESTED_SIZE = 1000, FORMULA_LENGTH // 16, 300
 """Terms up to which a formula is formatted, without kernels and with them (a product of two takes some
 twenty characters), and operations up to which a nested form is."""
@@ -73,10 +72,7 @@ def origin_lines(model: Model, width: int) -> list[str]:
 
 
 def described(parameter: ModelParameter, name: str) -> str:
-    """Return what a parameter is, with its unit, as inert text that ends with a full stop.
-
-    ``name`` is what it is called in the generated code.
-    """
+    """Return what a parameter called ``name`` in the code is, with its unit: inert text with a full stop."""
     parts = [inert(parameter.doc).rstrip(".")] if parameter.doc.strip() else []
     parts += [f"'{inert(parameter.name)}' in the model"] if name != parameter.name else []
     text = f"{', '.join(parts) or 'parameter of the model'}"
@@ -94,10 +90,7 @@ def value_as_written(parameter: ModelParameter) -> str:
 
 
 def default_value(parameter: ModelParameter) -> str:
-    """Return the double nearest to a parameter's value as text, empty without a value.
-
-    Raises ModelError: SF233 when it does not fit in double precision.
-    """
+    """Return the double nearest to a parameter's value as text, empty without a value; SF233 if none fits."""
     value = parameter.value
     if parameter.is_imaginary:
         return "1j"
@@ -192,10 +185,7 @@ class BlockComment:
 
 
 def statement_lines(text: str, width: int, indent: str, more: str = "    ") -> list[str]:
-    """Return code in lines broken at blanks; all but the first are indented ``more``.
-
-    Only between operators: an identifier longer than a line stays whole.
-    """
+    """Return code in lines broken at blanks between operators; all but the first are indented ``more``."""
     wrapper = TextWrapper(width, indent, indent + more, break_long_words=False, break_on_hyphens=False)
     return wrapper.wrap(text)
 

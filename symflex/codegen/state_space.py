@@ -60,23 +60,7 @@ if TYPE_CHECKING:
 
 
 class StateEquations:
-    r"""The equations of one exact realisation, for print.
-
-    >>> from symflex import pipeline
-    >>> model = pipeline.loads('''
-    ... symflex = 1
-    ... parameters = {m = "2 kg", b = "3 N*s/m", k = "8 N/m"}
-    ... elements.body = {type = "mass", at = "x", m = "m"}
-    ... elements.damping = {type = "damper", between = ["x", "ground"], b = "b"}
-    ... elements.wall = {type = "spring", between = ["x", "ground"], k = "k"}
-    ... inputs.F = {force = "x"}
-    ... outputs.X = "x"
-    ... ''')
-    >>> print("\n".join(StateEquations(realise(model)).lines()))
-    s*x = x_dot
-    s*x_dot = -k/m*x - b/m*x_dot + 1/m*F
-    X = x
-    """
+    """The equations of one exact realisation, for print: ``s*x_dot = -k/m*x - b/m*x_dot + 1/m*F``."""
 
     def __init__(self, system: StateSpace) -> None:
         self.system = system
@@ -142,7 +126,6 @@ class StateEquations:
 
 TERM_LIMIT = 20_000  # terms of all entries together; beyond that the text would be megabytes
 EQUATION_LINES = 60  # lines of equations in the docstring
-
 WORK, FEWEST = 400 * 12**3, 20
 """Frequencies times the cube of the order, which a measurement may cost, and its fewest frequencies."""
 
@@ -164,10 +147,8 @@ def state_space_module(
 ) -> Export:
     """Return a module with a function ``state_space(*, parameter=default, ...)`` that returns A, B, C, D.
 
-    ``STATES``, ``INPUTS`` and ``OUTPUTS`` list names and units in the order of rows and columns. The system
-    has symbols; its functions are measured at some ``samples`` in the model's ``[analysis]`` band, else from
-    0.1 Hz to 10 kHz. SF503 when the text would be too long, SF233 when a number does not fit in double
-    precision.
+    Its functions are measured at some ``samples`` in the model's band, else from 0.1 Hz to 10 kHz. SF503 when
+    the text would be too long, SF233 when a number does not fit in double precision.
     """
     size = sum(v.size for _, rows, _ in system.matrices for row in rows for v in row.values())
     if size > TERM_LIMIT:

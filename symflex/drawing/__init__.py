@@ -40,7 +40,6 @@ if TYPE_CHECKING:
     _Row = tuple[Sequence[Placed], tuple[str, ...]]  # what is drawn, and elements that are left out
 
 __all__ = ["Drawing", "Extent", "Placed", "draw_model", "drawing_of", "render_drawing"]
-
 LEGEND: Final = 230.0  # width of the lines of values below a drawing [points]
 ROUND: Final = 0.3
 """How far from its axes wires leave a round body, as a share of its radius: it is still as wide there."""

@@ -138,10 +138,7 @@ def label_of(one: DrawnPart | Distance) -> Placed:
 
 
 def tags_of(part: DrawnPart) -> list[Built]:
-    """Return what shows or reads what a part carries: each a text at the origin, and an arrow to it.
-
-    What a support is called, if it is called something, stands before them without an arrow.
-    """
+    """Return what shows or reads what a part carries, with arrows; before it, a support's own name."""
     tags = []
     if part.symbol.role == "support" and len(part.ends) == 1 and (called := text(part.label, SMALL)):
         own = Placed("label", part.name, (), (called,))

@@ -84,10 +84,7 @@ class Column:
 
     @property
     def below(self) -> list[tuple[float, float]]:
-        """Where supports and then parts that hang begin and end, as seen from the node.
-
-        They stand side by side below its middle; at the end of a row what hangs from a member stands outside.
-        """
+        """Where supports and parts that hang, side by side or outside, begin and end from the node."""
         holds, hangs = [*map(support_width, self.supports)], [*map(hanging_width, self.hanging)]
         outside = self.outside if self.is_round and (holds or len(hangs) > 1) else 0
         x = -sum(holds) / 2 - (0.0 if outside else sum(hangs) / 2)

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 Point = tuple[float, float]
-
 THIN, LINE, BOLD, MEMBER = 0.5, 0.8, 1.6, 2.6
 """Widths of strokes [points]: of dimensions, of symbols, of shafts and forces, of rigid links."""
 PLAIN, FILLED, PAPER = "", "#E3E3E3", "#FFFFFF"

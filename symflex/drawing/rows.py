@@ -196,10 +196,7 @@ class _Layout:
             self.bridges.append(cell)
 
     def _is_ground_left(self, part: DrawnPart, index: int, gap: int) -> bool:
-        """Tell on which side an end at the ground is drawn.
-
-        One of a pair stands beside the other; the two ends of a stack face each other.
-        """
+        """Tell on which side an end at the ground is drawn: beside its pair, facing it in a stack."""
         end = part.ends[index]
         # The other of its pair first: terminals, windings and sides are listed in pairs.
         others = [*part.ends[index ^ 1 :][:1], *part.ends]

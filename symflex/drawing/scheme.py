@@ -165,10 +165,7 @@ def _domains(model: Model) -> dict[str, str]:
 
 
 def _as_wanted(net: DrawnNetwork, domains: Domains, hints: DrawingHints) -> DrawnNetwork:
-    """Return a network with what the specification says of its drawing.
-
-    Rollers stand below masses that nothing else shows to move along a line: no ground, no motion.
-    """
+    """Return a network as the specification wants it; rollers show masses that nothing else guides."""
     is_free = all(domains[n] == "translation" for n in net.nodes) and not (
         any(p.symbol.role == "support" or any(not e.node for e in p.ends) for p in net.parts)
         or any(m.style == "motion" and m.labels[0][0] == "input" for m in net.marks)

@@ -48,8 +48,7 @@ SHORT_BAND_DECADES: Final = 1.3
 NARROW_BAND_DECADES: Final = 0.6
 """Width of a narrow band: between a frequency and four times it there may be one tick of 1, 2 and 5."""
 FARTHEST: Final = 50.0  # times what is shown; numbers beyond a page would overflow in what reads the figure
-RIGHT_HALF_PLANE: Final = "#FBEDE4"
-"""A tint, pale enough for every line on it."""
+RIGHT_HALF_PLANE: Final = "#FBEDE4"  # a tint, pale enough for every line on it
 
 
 # ------------------------------------------------------------------------------------ magnitude over phase
@@ -190,11 +189,7 @@ NARROWEST = 1e-6  # least length of an axis over its ends: its ticks have six di
 
 @dataclass(frozen=True, slots=True)
 class AxisLimits:
-    """Ends of axes in place of those that a figure would choose.
-
-    >>> AxisLimits(x=(-10.0, 0.0)).y is None
-    True
-    """
+    """Ends of axes in place of those that a figure would choose."""
 
     # x and y: of the axes across and upwards: real and imaginary part, in an s plane [rad/s]; magnitudes [dB]
     # of a Bode plot upwards, whose frequencies are its band.

@@ -153,10 +153,7 @@ def _said_of_grid(found: PoleZeroMap) -> str:
 
 
 def draw_response(response: SampledResponse, ax: AxesGiven | None = None) -> Figure | None:
-    """Draw magnitude and phase of one frequency response, at its own frequencies.
-
-    On two axes of the user's own if they are given. None when it has less than two positive frequencies.
-    """
+    """Draw a frequency response at its own frequencies; None with fewer than two positive ones."""
     frequency = response.frequency_hz
     kept = frequency > 0
     order = np.argsort(frequency[kept], kind="stable")

@@ -171,10 +171,7 @@ def pgf_text(text: str, *, is_math: bool = True) -> str:
 
 
 def pgf_figure(figure: Figure) -> str:
-    r"""Return a figure as a ``pgfpicture`` exactly as wide as the figure.
-
-    Equal figures give equal text, in ASCII. Colours and transparency are kept; images cannot be drawn.
-    """
+    """Return a figure as a ``pgfpicture`` exactly as wide as it, in ASCII; images cannot be drawn."""
     dpi = figure.dpi
     with warnings.catch_warnings():
         # Letters that matplotlib has no glyphs of are TeX's to set.

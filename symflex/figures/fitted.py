@@ -207,10 +207,7 @@ def _draw_residual(fit: ResonanceFit, response: int, axes: Axes) -> None:
 
 
 def draw_orders(stable: Sequence[StablePoles], fit: ResonanceFit, response: int = 0) -> Figure:
-    """Draw a stabilisation diagram: poles found with more and more of them, over the measured magnitude.
-
-    Filled circles have frequency and damping of one found with two poles less; crosses do not.
-    """
+    """Draw a stabilisation diagram; a filled circle repeats a pole that was found with two poles less."""
     measured = fit.measured[response]
     with paper_style():
         figure = new_figure(COLUMN_INCHES, ORDER_INCHES)

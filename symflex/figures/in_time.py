@@ -49,10 +49,7 @@ TICK: Final = 5  # percent of residual vibration that designers ask for
 
 
 def draw_responses(kind: str, bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
-    """Draw step or impulse responses in one figure, without the impulses they contain themselves.
-
-    See :func:`symflex.figures.draw`.
-    """
+    """Draw step or impulse responses, without impulses; see :func:`symflex.figures.draw`."""
     if canvas.frame.x:
         times = SampleTimes.evenly(Fraction(canvas.frame.x[1]), POINTS)
         responses = [time_response(bound, kind, times, DIGITS) for bound in bounds]

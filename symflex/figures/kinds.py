@@ -108,10 +108,7 @@ def draw_shape(
     font: str = DEFAULT_FONT,
     ax: AxesGiven | None = None,
 ) -> Figure:
-    """Draw one mode shape of a model, as :func:`draw` draws several.
-
-    Raises ModelError: SF402 nothing moves that could be drawn.
-    """
+    """Draw one mode shape of a model, as :func:`draw` draws several; SF402 if nothing moves."""
     canvas = _canvas(None, FREE, None, width_mm, ax)
     if not panels_of(model, [shape]):
         raise ModelError(Diagnostic("SF402", "nothing that moves in this mode could be drawn"))

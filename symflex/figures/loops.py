@@ -265,10 +265,7 @@ def draw_nyquist(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
 
 
 def draw_loop_gain(loop: AnyLoop, canvas: Canvas) -> Figure:
-    """Draw a loop gain as :func:`draw_nyquist` draws others; a verdict asked for is of the closed loop.
-
-    The part of the plane about -1 is shown; where the curve leaves it, it goes on outside.
-    """
+    """Draw a loop gain about -1 as :func:`draw_nyquist` does; a verdict asked for is of the closed loop."""
     return draw_curves(loop, canvas, _draw_about_one)
 
 

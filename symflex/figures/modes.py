@@ -89,10 +89,7 @@ def draw_modes(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
 def draw_shapes(
     model: Model, shapes: Sequence[EnclosedModeShape], canvas: Canvas, said: str | None = None
 ) -> Figure:
-    """Draw shapes of a model below each other; what is ``said`` of it stands below the title.
-
-    As :func:`draw_modes` otherwise. On axes of the user's own, one per panel, no title is written.
-    """
+    """Draw shapes of a model below each other, with what is ``said`` of it; see :func:`draw_modes`."""
     panels = panels_of(model, shapes)
     width = canvas.width or (COLUMN_INCHES if len(panels) <= PANELS_IN_COLUMN else PAGE_INCHES)
     titles = (title_lines(canvas.title, width), title_lines(said, width))
@@ -148,15 +145,7 @@ def draw_shapes(
 
 
 def heading(shape: EnclosedModeShape) -> str:
-    r"""Return natural frequency and damping ratio, or loss factor, of a mode, or its pole if that is real.
-
-    >>> from flint import arb
-    >>> from symflex.analysis.modes import EnclosedModeShape
-    >>> from symflex.roots import Root
-    >>> pole = Root(arb(-3), arb(4), 1, on_imaginary_axis=False, is_real=False)
-    >>> heading(EnclosedModeShape(pole, (), (), "x", True))
-    '$0.7958$ Hz, $\\zeta = 0.600$'
-    """
+    """Return natural frequency and damping ratio, or loss factor, of a mode, or its pole if that is real."""
     pole = shape.pole
     unstable = ", unstable" if pole.re > 0 else ""
     if pole.is_real:

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from symflex.model import Model, PlacedElement
 
 Vector = tuple[float, float]
-
 AT_REST: Final = 1e-9
 APART: Final = 0.3  # space between members that no node joins, as a share of the length of one
 
@@ -120,10 +119,7 @@ def _carrying(model: Model) -> set[str]:
 
 
 def _plan(model: Model, parts: dict[str, DistributedShape]) -> Iterator[Plan]:
-    """Yield the members of frames, those that are joined placed by their lengths and directions.
-
-    What pins, joints and links join is drawn at one place. Each end at ground is a place of its own.
-    """
+    """Yield the members of frames, joined ones side by side; each end at ground is a place of its own."""
     lines = [use for use in _lines(model) if parts[use.name].direction]
     joints = [found for use in model.elements if use.element.carries_x for _, found in use.nodes]
     pairs = [(found[0], other) for found in joints for other in found[1:]]

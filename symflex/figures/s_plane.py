@@ -214,21 +214,12 @@ TEXT_COST, SHIFT_COST = 30.0, 0.1  # of covering a text, or a step away from a m
 GRID: Final = 3  # distance of places that are tried for a note [points]
 GLYPHS: Final[dict[Kind, str]] = {"pole": r"$\times$", "zero": r"$\circ$", "nominal": r"$\star$"}
 """Signs of roots that are named at an arrow; the curves of a locus lead to poles at the last gain."""
-
 Box = tuple[float, float, float, float]  # left, bottom, right, top [points]
 
 
 @dataclass(frozen=True, slots=True)
 class Panel:
-    """A panel of a given size that shows a view, and the roots drawn in it.
-
-    >>> from symflex.figures.s_plane import View
-    >>> panel = Panel(View((-10.0, 10.0), (-10.0, 10.0), frozenset()), 1.0, 1.0, (5 + 0j,))
-    >>> panel.at(5 + 0j)
-    (54.0, 36.0)
-    >>> panel.clearest([(50.0, 30.0, 60.0, 40.0), (10.0, 30.0, 20.0, 40.0)])
-    1
-    """
+    """A panel of a given size that shows a view, and the roots drawn in it."""
 
     view: View  # what it shows
     width: float  # [inches]
@@ -260,10 +251,7 @@ class Panel:
     def clearest(
         self, boxes: Sequence[Box], texts: Sequence[Box] = (), arrows: Sequence[Box] = (), price: float = 0.0
     ) -> int:
-        """Return which of several rectangles covers fewest texts, roots and arrows; the first of equals.
-
-        Each next one, which is further from where it belongs, costs so much more [roots].
-        """
+        """Return which rectangle covers fewest texts, roots and arrows; the first ones are preferred."""
         costs = [self.cost(box, texts, arrows) + price * i for i, box in enumerate(boxes)]
         return costs.index(min(costs))
 

@@ -15,8 +15,7 @@ from symflex.figures.style import COLOURS, QUIET, label_of_name, label_of_unit
 from symflex.loops.chart import StabilityChart, word_of
 from symflex.loops.stability_map import StabilityMap
 
-STABLE: Final = "#DDEBF5"
-"""A tint, pale enough for every line on it."""
+STABLE: Final = "#DDEBF5"  # a tint, pale enough for every line on it
 HEIGHT_INCHES: Final = 2.9
 STRIP_INCHES: Final = 1.7
 LEGIBLE: Final = 0.01  # least share of the area of a region in which its count stands

@@ -41,7 +41,6 @@ COLOURS: Final = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E
 DASHES: Final = ("-", (0, (5, 1.5)), (0, (5, 1.2, 1.2, 1.2)), (0, (1.2, 1.2)))
 QUIET: Final = "#8C8C8C"
 FAINT: Final = "#E3E3E3"
-
 _FALLBACK: Final = ["STIXGeneral", "DejaVu Sans"]
 
 # All come with matplotlib: the same glyphs on every computer.
@@ -98,10 +97,7 @@ _PAPER: Final[dict[str, object]] = {
 
 
 def paper_style(font: str = DEFAULT_FONT) -> AbstractContextManager[None]:
-    """Return a context in which matplotlib draws as for a paper, whatever the user's own settings.
-
-    Raises UsageError: SF208 for any other font.
-    """
+    """Return a context for a paper's style, whatever the user's settings; SF208 for any other font."""
     if font not in FONTS:
         hint = nearest(font, FONTS) or "fonts: " + ", ".join(FONTS)
         raise UsageError(Diagnostic("SF208", f"there is no font '{font[:64]}' for figures", None, hint))
@@ -163,11 +159,7 @@ def label_of_tf(tf: AnyTransferFunction) -> str:
 
 
 def label_of(end: Output | Input) -> str:
-    """Return the label of an output or input, without dollar signs.
-
-    The model's own label is taken when it is sound LaTeX that matplotlib can typeset, else one made from the
-    name.
-    """
+    """Return the label of an end: the model's own if matplotlib can typeset it, else one of its name."""
     label = end.latex.strip()
     if not label or read_label(label) is None:
         return label_of_name(end.name)
@@ -264,13 +256,7 @@ def number_label(value: float) -> str:
 
 
 def checked_font(font: str | None, path: Path) -> str:
-    """Return the name of a font for a figure.
-
-    Raises
-    ------
-    UsageError
-        SF902 when there is no such font.
-    """
+    """Return the name of a font for a figure; UsageError: SF902 when there is no such font."""
     font = font or ("latex" if path.suffix.lower() == ".pgf" else DEFAULT_FONT)
     if font not in FONTS:
         hint = nearest(font, FONTS) or "fonts: " + ", ".join(FONTS)

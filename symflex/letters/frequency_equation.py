@@ -55,20 +55,9 @@ NO_EQUATION: Final = (
 def roots_in_letters(
     tf: AnyTransferFunction, bound: AnyBoundFunction, located: PoleZeroMap
 ) -> tuple[FactorInLetters, ...]:
-    r"""Return what can be said in letters of the factors of a function, or why nothing can.
+    """Return what can be said in letters of the factors of a function, or why nothing can.
 
     Only roots that the map lists are spoken of.
-
-    Examples
-    --------
-    >>> from symflex import pipeline
-    >>> from symflex.letters.roots import letters_text
-    >>> text = 'symflex = 1\nparameters = { T = "2 s" }\ninputs.u = {}\noutputs.y = "u/(T*s + 1)"'
-    >>> (tf,) = pipeline.derive_all(pipeline.loads(text))
-    >>> bound = pipeline.bind(tf)
-    >>> print(letters_text(roots_in_letters(tf, bound, pipeline.roots(bound))).lstrip())
-    poles in letters: T*s + 1 = 0
-        tau_p = T = 2 s
     """
     if not tf.is_reduced or tf.is_large or tf.model.imaginary or tf.model.root is not None:
         why = "the formula is large, or has roots of s or complex coefficients"

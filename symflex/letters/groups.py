@@ -74,26 +74,7 @@ BITS, ENOUGH = 192, 64  # precision at the test points, and how many bits of it 
 
 
 def dimensionless_of(tf: AnyTransferFunction) -> InLetters:
-    """Return a transfer function in dimensionless groups, its scale, and what these are.
-
-    Examples
-    --------
-    >>> from symflex import pipeline
-    >>> model = pipeline.loads('''
-    ... symflex = 1
-    ... parameters = { m = "2 kg", k = "8 N/m", b = "0.8 N*s/m" }
-    ... inputs.F = {}
-    ... outputs.X = "F/(m*s^2 + b*s + k)"
-    ... ''')
-    >>> print(dimensionless_of(pipeline.derive_all(model)[0]).text())
-    X/F   receptance [m/N]
-    <BLANKLINE>
-      X/F = scale * 1/(S^2 + 2*zeta*S + 1)
-      scale = 1/k   0.125 m/N
-      S = sqrt(m/k)*s
-      zeta = b/(2*sqrt(m*k))   damping ratio, 0.1
-    <BLANKLINE>
-    """
+    """Return a transfer function in groups without dimension, its scale, and what these are."""
     try:
         if not tf.is_reduced or tf.is_zero or tf.model.root is not None:
             raise NotInLettersError("it is nested, zero, or has roots of s")

@@ -152,27 +152,7 @@ class InLetters:
 
 
 def limits_of(tf: AnyTransferFunction) -> InLetters:
-    """Return the leading terms of a transfer function at both ends, and where they meet.
-
-    Examples
-    --------
-    >>> from symflex import pipeline
-    >>> model = pipeline.loads('''
-    ... symflex = 1
-    ... parameters = { m = "2 kg", k = "8 N/m" }
-    ... elements.body = { type = "mass", at = "x", m = "m" }
-    ... elements.wall = { type = "spring", between = ["x", "ground"], k = "k" }
-    ... inputs.F = { force = "x" }
-    ... outputs.X = "x"
-    ... ''')
-    >>> print(limits_of(pipeline.derive_all(model)[0]).text())
-    X/F   receptance [m/N]
-    <BLANKLINE>
-      s -> 0:         1/k   static compliance, 0.125 m/N
-      s -> infinity:  1/(m*s^2)   mass line, -40 dB/decade, 0.5 m/(N*s^2)
-      both meet at:   sqrt(k/m)   0.31831 Hz, 2 rad/s
-    <BLANKLINE>
-    """
+    """Return the leading terms of a transfer function at both ends, and where they meet."""
     found: dict[str, tuple[Row, Powers]] = {}
     notes = []
     for end in ENDS:
@@ -497,8 +477,6 @@ def times(*parts: tuple[dict[Any, Fraction], Fraction]) -> dict[Any, Fraction]:
 def written_powers(powers: Powers) -> Expression:
     """Return powers as one fraction, equal roots as one, and the power of s apart.
 
-    Examples
-    --------
     >>> from symflex.expressions import Name
     >>> half, k = Fraction(1, 2), Name("k")
     >>> format_expression(written_powers({number(3): half, k: half, Name("m"): -3 * half, S: -3 * half}))

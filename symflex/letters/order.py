@@ -34,19 +34,7 @@ from symflex.transfer.lowest_terms import cancel
 def truncated(tf: TransferFunction, order: int) -> tuple[TransferFunction, PrintedForm]:
     """Return a distributed function as a rational one, in letters, up to a power of s.
 
-    Raises UsageError: SF902 for a function whose wavenumbers do not vanish at s = 0.
-
-    Examples
-    --------
-    >>> from symflex import pipeline
-    >>> model = pipeline.loads('''
-    ... symflex = 1
-    ... parameters = { T = "1 s" }
-    ... inputs.u = {}
-    ... outputs.y = "u*exp(-T*s)"
-    ... ''')
-    >>> str(truncated(pipeline.derive_all(model)[0], 2)[0].ratio)
-    '1/2*(s^2*T^2 - 2*s*T + 2)'
+    Raises UsageError: SF902 for a function whose waves do not come to rest at s = 0.
     """
     if tf.is_rational:
         whole = Approximation(("it is a rational function of s already",), {"kind": "order"}, is_whole=True)

@@ -182,10 +182,7 @@ def is_passive(model: Model) -> bool:
 
 
 def _hurwitz(signs: Signs, polynomial: fmpz_mpoly, *, is_even: bool) -> list[fmpz_mpoly]:
-    """Return what is positive exactly when all roots lie in the left half-plane, or are simple on the axis.
-
-    First come both ends of the polynomial and the largest determinant.
-    """
+    """Return ends and determinant, positive exactly when roots lie to the left, or simple on the axis."""
     ring = signs.ring
     a = ring.coefficients(polynomial)[::-1]
     if is_even:  # the derivative of Q by s^2, times s

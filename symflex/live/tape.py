@@ -50,7 +50,6 @@ from symflex.roots.passivity import energy_proof
 from symflex.transfer import AnyTransferFunction, BoundTransferFunction, TransferFunction, bind
 
 MODES = 10  # number of modes that a page follows; the edge of its window lies between that and the next ones
-
 ULP = 2.0**-52  # bound of the relative error of a number that is rounded to a double
 
 
@@ -58,13 +57,6 @@ def tape_of(tf: AnyTransferFunction, names: Mapping[str, str], modes: int = MODE
     """Return the tapes of a transfer function's numerator and denominator, or why there are none.
 
     ``names`` are the identifiers of parameters, by their names in the model.
-
-    >>> from symflex import pipeline
-    >>> model = pipeline.load("derivations/eppinger1988/two_mass.toml")
-    >>> tf = pipeline.derive_all(model)[0]
-    >>> tape = tape_of(tf, {p.name: p.name for p in tf.parameters})
-    >>> [part["degree"] for part in tape["poles"]], len(tape["start"]["poles"])
-    ([1, 2], 1)
     """
     if (reason := _refusal(tf)) or not tf.is_reduced:
         return {"refused": reason}
@@ -98,10 +90,7 @@ def _refusal(tf: AnyTransferFunction) -> str:
 
 
 def _parts(tf: TransferFunction, bound: BoundTransferFunction, number: int) -> Iterator[dict[str, object]]:
-    """Yield what numerator (0) or denominator (1) is a product of, each with its tape.
-
-    Their degree is 0 with kernels; order is that of the zero at s = 0.
-    """
+    """Yield what numerator (0) or denominator (1) is a product of, with tapes and orders at s = 0."""
     side, ring = (tf.num, tf.den)[number], tf.ratio.ring
     if not any(side.depends_on(k.generator) for k in tf.kernels.kernels):
         for polynomial, exponent in side.factors:

@@ -49,15 +49,7 @@ LONG: Final = "a formula this long is not written"
 
 
 def typst(tf: AnyTransferFunction, form: PrintedForm) -> str:
-    r"""Return a transfer function as displays of Typst, one a row.
-
-    >>> from symflex import pipeline
-    >>> from symflex.print.forms import print_forms
-    >>> model = pipeline.loads('symflex = 1\nparameters.k = 2\ninputs.u = {}\noutputs.y = "k*u/(s^2 + k)"')
-    >>> derived, _ = pipeline.derive_as(model, model.transfer_functions)
-    >>> print(typst(derived[0], print_forms(derived)[0][0]))
-    $ frac(y (s), u (s)) = frac(k, s^(2) + k) $
-    """
+    """Return a transfer function as displays of Typst, one a row: ``$ frac(y (s), u (s)) = frac(k, s) $``."""
     return "\n".join(f"$ {left} = {right} $" for left, right in _rows(tf, form, _typst))
 
 

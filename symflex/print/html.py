@@ -39,17 +39,13 @@ def escape_html(text: str) -> str:
 
 TEXT: Final = "left"
 NUMBER: Final = "right"
-
 LONGEST: Final = 200  # rows that are shown; the number of those that are not is said
 
 
 def html_table(
     head: Sequence[str], columns: Sequence[str], rows: Sequence[Sequence[str]], caption: str = ""
 ) -> str:
-    """Return a table.
-
-    Head, cells and caption are HTML; every column is :data:`TEXT` or :data:`NUMBER`.
-    """
+    """Return a table. Head, cells and caption are HTML; every column is :data:`TEXT` or :data:`NUMBER`."""
     lines = ["<table>"]
     if caption:
         lines.append(f'<caption style="text-align: left">{caption}</caption>')
@@ -75,12 +71,7 @@ MINUS: Final = re.compile(r"(?<![\w.])-(?=[\d.i])|(?<=\de)-(?=\d)")
 
 
 def passages_html(passages: Iterable[Passage]) -> str:
-    """Return the output of a command as paragraphs and tables.
-
-    >>> from symflex.print.text import Passage
-    >>> print(passages_html([Passage(["a <b>", "  of it"])]))
-    <p>a &lt;b&gt;<br>&emsp;of it</p>
-    """
+    """Return what a command says as paragraphs and tables."""
     parts = []
     for passage in passages:
         outer = min((_indent(line) for line in passage.lines), default=0)

@@ -69,13 +69,7 @@ def fence_signs(nesting: int, *, is_tall: bool = False) -> tuple[str, str]:
 
 
 def math_element(content: str, *, is_display: bool = False) -> str:
-    """Return mathematics as an element of a page.
-
-    Examples
-    --------
-    >>> math_element("<mi>s</mi>")
-    '<math><mi>s</mi></math>'
-    """
+    """Return mathematics as an element of a page."""
     attribute = ' displaystyle="true"' if is_display else ""
     return f"<math{attribute}>{content}</math>"
 
@@ -83,8 +77,6 @@ def math_element(content: str, *, is_display: bool = False) -> str:
 def label_mathml(name: str, labels: Mapping[str, str]) -> str:
     r"""Return the label of a name, declared or made.
 
-    Examples
-    --------
     >>> label_mathml("omega_p1", {})
     '<msub><mi>ω</mi><mrow><mi>p</mi><mn>1</mn></mrow></msub>'
     >>> label_mathml("m", {"m": r"m_{\mathrm{eff}}"})
@@ -98,8 +90,6 @@ def page_signs() -> str:
 
     Browsers set a letter that stands alone in the italic alphabet of Unicode.
 
-    Examples
-    --------
     >>> [sign in page_signs() for sign in "x𝑥ℎω𝜔√′⋅𝒩"]
     [True, True, True, True, True, True, True, True, True]
     """
@@ -121,14 +111,6 @@ def mathml_expression(expression: Expression, labels: Mapping[str, str]) -> str:
 
     Labels are declared ones in LaTeX; other names get theirs from their letters. Raises TypeError for an
     equation or a quantity of an element, which no transfer function contains.
-
-    Examples
-    --------
-    >>> from symflex.expressions import Name, number, power, product_of, sum_of
-    >>> mathml_expression(sum_of([power(Name("s"), 2), Name("k")]), {})
-    '<mrow><msup><mi>s</mi><mn>2</mn></msup><mo>+</mo><mi>k</mi></mrow>'
-    >>> mathml_expression(product_of([number(2), Name("b")]), {})
-    '<mrow><mn>2</mn><mo>&#x2062;</mo><mi>b</mi></mrow>'
     """
     return MathmlWriter(labels).piece(expression).markup
 

@@ -325,10 +325,7 @@ def _is_longer(expression: Expression, most: int) -> bool:
 
 
 def _as_read(form: PrintedForm) -> PrintedForm:
-    """Return a form as its text is read; what is longer than is worth while, or than limits allow, as it is.
-
-    Bessel functions are written and not read.
-    """
+    """Return a form as its text is read; one too long, or with Bessel functions, as it is."""
     room = LONGEST_TEXT
 
     def read(expression: E, reader: Callable[..., E]) -> E:

@@ -38,10 +38,7 @@ class PrintedRoot:
     is_pair: bool
 
     def cells(self, columns: Sequence[RootColumn], digits: int, both: str = "") -> list[str]:
-        """Return what columns show, in decimals with at most so many certified digits.
-
-        ``both`` is how a page writes plus and minus, before what stands for both members of a pair.
-        """
+        """Return what columns show, in so many certified digits, a pair's after ``both``, plus and minus."""
         printed = self.root.decimal(digits)
         return [
             both * (self.is_pair and column.is_mirrored) + column.text(self.root, printed, digits)
@@ -203,10 +200,7 @@ CAUSES: Final = {
 
 
 def roots_text(located: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
-    """Return poles and zeros as tables, with the certificate.
-
-    Where a line per root is longer than ``width`` columns, the imaginary part stands below the real part.
-    """
+    """Return poles and zeros as tables, with the certificate, in lines of at most ``width`` columns."""
     certificate = located.certificate
     status = "certified" if certificate.certified else f"NOT CERTIFIED: {certificate.reason}"
     word = located.verdict.brief

@@ -30,10 +30,6 @@ def to_sympy(expression: Expression, symbols: Mapping[str, sympy.Symbol]) -> sym
 
     A name that ``symbols`` lack becomes a plain symbol. A function of x that only a differential equation
     determines becomes an undefined function, or its derivative at a point.
-
-    >>> from symflex.expressions import Name, Sum
-    >>> to_sympy(Sum((Name("a"), Name("b"))), {})
-    a + b
     """
     table = {**symbols, "pi": sympy.pi}
 
@@ -63,19 +59,6 @@ def sympy_system(function: TransferFunction | BoundTransferFunction) -> SympyTra
     Symbols bear the parameters' assumptions; numbers are rational, with pi and roots where the model has
     them. Raises ModelError: SF235 when it is not rational in s; BudgetError: SF501 when its polynomials are
     too large to be multiplied out.
-
-    >>> from symflex import pipeline
-    >>> model = pipeline.loads('''
-    ... symflex = 1
-    ... parameters = {m = "2 kg", b = "0.1 N*s/m"}
-    ... elements.body = {type = "mass", at = "x", m = "m"}
-    ... elements.damping = {type = "damper", between = ["x", "ground"], b = "b"}
-    ... inputs.F = {force = "x"}
-    ... outputs.V = "s*x"
-    ... ''')
-    >>> (tf,) = pipeline.derive_all(model)
-    >>> sympy_system(tf), sympy_system(pipeline.bind(tf))
-    (TransferFunction(1, b + m*s, s), TransferFunction(10, 20*s + 1, s))
     """
     from sympy.physics.control import TransferFunction as SympyTransferFunction  # takes a while
 

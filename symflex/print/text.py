@@ -236,16 +236,7 @@ class Passage(NamedTuple):
 
 
 def passages_text(passages: Iterable[Passage], width: int | None = None) -> str:
-    r"""Return passages for a terminal, an empty line between two; their lines broken at ``width`` if given.
-
-    >>> table = [("f [Hz]", "zeta"), ("9.5", "0.01")]
-    >>> print(passages_text([Passage(["two poles"], table), Passage(["no zeros"])]))
-    two poles
-        f [Hz]  zeta
-           9.5  0.01
-    <BLANKLINE>
-    no zeros
-    """
+    """Return passages for a terminal, an empty line between two; their lines broken at ``width`` if given."""
     shown = []
     for passage in passages:
         lines = [part for line in passage.lines for part in (broken(line, width) if width else [line])]

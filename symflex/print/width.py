@@ -52,11 +52,7 @@ class Width:
 
 
 def total(widths: Iterable[Width]) -> Width:
-    """Return the width of things side by side.
-
-    >>> total([Width(1.0, 0.7, 0.5), Width(0.5, 0.4, 0.35)])
-    Width(text=1.5, script=1.1, tiny=0.85)
-    """
+    """Return the width of things side by side."""
     text = script = tiny = 0.0
     for width in widths:
         text += width.text
@@ -92,15 +88,12 @@ SCRIPT_SPACE: Final = always(0.05)  # what follows a subscript or superscript
 FRACTION_EDGES: Final = always(0.241)  # beside a fraction
 FENCE_SIZES: Final = (Width(0.389, 0.313, 0.271), Width(0.278, 0.227, 0.202), Width(0.501, 0.41, 0.369))
 r"""A parenthesis, bracket and brace."""
-BIG_FENCES: Final = (0.459, 0.417, 0.584)
-r"""The same after ``\big``."""
-BIGGER_FENCES: Final = (0.598, 0.473, 0.667)
-r"""The same after ``\Big``."""
+BIG_FENCES: Final = (0.459, 0.417, 0.584)  # the same after ``\big``
+BIGGER_FENCES: Final = (0.598, 0.473, 0.667)  # the same after ``\Big``
 TALL_FENCES: Final = tuple(always(em + 0.167) for em in (0.876, 0.667, 0.889))
 r"""The same after ``\left``, however tall, with the space that sets off what it encloses."""
 ROOT: Final = always(1.001)
 TALL_ROOT: Final = always(1.056)
-
 DIGIT: Final = DIGIT_SIZES.text
 THIN: Final = THIN_SIZES.text
 OPERATOR: Final = OPERATOR_SIZES.text
@@ -197,7 +190,6 @@ OTHER_ALPHABETS: Final = Alphabet(
 )
 """Bold, sans serif and calligraphic letters."""
 TYPEWRITER: Final = 0.53
-
 _SIGNS: Final = {c: 0.78 for c in punctuation} | {c: 0.39 for c in "()[].,:;'!`-"} | {" ": 0.34}
 ROMAN: Final = {c: width.text for c, width in UPRIGHT.widths.items()} | _SIGNS
 """Upright text and its signs at ten points."""
@@ -217,9 +209,5 @@ _GREEK: Final = _table(
 
 
 def greek_width(command: str) -> Width:
-    """Return the width of a Greek letter.
-
-    >>> greek_width("zeta").text, greek_width("Omega").text
-    (0.512, 0.723)
-    """
+    """Return the width of a Greek letter."""
     return _GREEK[command]

@@ -66,10 +66,7 @@ _EM_PER_CHARACTER: Final = 0.34
 
 
 def report_article(report: Report) -> str:
-    """Return a report as a LaTeX document; figures are read from the folder ``figures`` beside it.
-
-    It is compiled three times, for the table of contents.
-    """
+    """Return a report as a LaTeX document, to be compiled three times, beside its folder ``figures``."""
     byline = r"\\[2pt]".join(escape_text(line) for line in (report.subtitle, report.date) if line)
     parts = [
         "% To be compiled three times, with pdflatex or lualatex.",

@@ -68,9 +68,7 @@ class Aside:
     text: str
 
 
-Run: TypeAlias = "str | Mathematics | Code | Badge | PageLink | Aside"
-"""A line break is ``"\\n"``."""
-
+Run: TypeAlias = "str | Mathematics | Code | Badge | PageLink | Aside"  # a line break is ``"\n"``
 Cell: TypeAlias = "tuple[Run, ...]"
 
 

@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from symflex.transfer import AnyTransferFunction, TransferFunction
 
 Place = Literal["origin", "imaginary axis", "real axis", "plane"]
-
 SCHEMA: Final = "symflex.report-facts/1"
 
 
@@ -258,10 +257,7 @@ class ModelFacts:
     data: tuple[DataFact, ...] = ()  # of measured responses named like a transfer function
 
     def of(self, tf: str) -> TransferFacts:
-        """Return the facts of one transfer function.
-
-        Raises KeyError when there are none.
-        """
+        """Return the facts of one transfer function. Raises KeyError when there are none."""
         return {facts.tf: facts for facts in reversed(self.functions)}[tf]
 
     def to_json_dict(self) -> dict[str, object]:
@@ -294,10 +290,7 @@ def bare_facts(stem: str, model: Model) -> ModelFacts:
 
 
 def facts_of(study: Study) -> ModelFacts:
-    """Return the facts about a model.
-
-    Functions that cannot be bound to numbers have none.
-    """
+    """Return the facts about a model. Functions that cannot be bound to numbers have none."""
     model = study.model
     rigid, undamped = study.rigid_counts, study.undamped_counts
     functions = []

@@ -34,24 +34,7 @@ class PhaseCondition:
 
 
 def minimum_phase(tf: TransferFunction, explained: ZeroExplanation) -> PhaseCondition:
-    """Return the condition under which a transfer function is minimum phase.
-
-    ``explained`` says what its zeros are the poles of.
-
-    >>> from symflex import pipeline
-    >>> model = pipeline.loads('''
-    ... symflex = 1
-    ... parameters = { m = {}, k = {}, g = {} }
-    ... elements.body = { type = "mass", at = "x", m = "m" }
-    ... elements.wall = { type = "spring", between = ["x", "ground"], k = "k" }
-    ... inputs.F = { force = "x" }
-    ... outputs.y = "k*x - g*s^2*x"
-    ... ''')
-    >>> (tf,) = pipeline.derive_all(model)
-    >>> from symflex.analysis.explanation import ZeroExplanation
-    >>> minimum_phase(tf, ZeroExplanation("y/F", "noncolocated", "proved", "y", "F")).kind
-    'never'
-    """
+    """Return when a transfer function is minimum phase, whose zeros are ``explained`` as poles."""
     if explained.kind == "colocated" and explained.status == "proved" and is_passive(tf.model):
         reason = f"the zeros are the poles of the same passive structure with {explained.held}"
         return PhaseCondition("always", reason)

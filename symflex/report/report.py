@@ -128,10 +128,7 @@ def name_specifications(paths: Sequence[Path]) -> dict[str, Path]:
 def find_claims(
     specifications: Iterable[Path], allow_outside: Sequence[Path] = ()
 ) -> tuple[Publication, ...]:
-    """Return what publications claim of specifications, by files ``claims.toml`` in the same folders.
-
-    Raises UsageError, SpecError: See :func:`symflex.report.claims.read.read_claims`.
-    """
+    """Return what ``claims.toml`` beside specifications says; see :func:`.claims.read.read_claims`."""
     folders = dict.fromkeys(path.parent for path in specifications)
     files = [f / CLAIMS for f in folders if not _leads_out(f / CLAIMS, (f, *allow_outside))]
     return tuple(read_claims(file) for file in files if is_claims(file))
@@ -175,10 +172,7 @@ def _leads_out(file: Path, folders: Sequence[Path]) -> bool:
 
 
 def check_specifications(named: Mapping[str, Path], allow_outside: tuple[Path, ...] = ()) -> None:
-    """Refuse, before anything is computed, specifications that are not solvable models.
-
-    Raises SpecError, ModelError, UsageError with every problem of all files.
-    """
+    """Refuse specifications that are no solvable models, with every problem of all files."""
     failed: list[SymflexError] = []
     for stem, path in named.items():
         checked = attempt(partial(Study.of, path, stem, allow_outside=allow_outside))

@@ -52,19 +52,7 @@ class Compliance:
 
 
 def compliances(model: Model) -> tuple[Compliance, ...]:
-    """Return what gives way in a model, in the order of its text.
-
-    >>> from symflex import pipeline
-    >>> model = pipeline.loads('''
-    ... symflex = 1
-    ... elements.body = { type = "mass", at = "x", m = 2 }
-    ... elements.wall = { type = "spring", between = ["x", "ground"], k = 12 }
-    ... inputs.F = { force = "x" }
-    ... outputs.X = "x"
-    ... ''')
-    >>> compliances(model)
-    (Compliance(name='wall', is_bending=False, place='base'),)
-    """
+    """Return what gives way in a model, in the order of its text."""
     compliant = []
     for use in model.elements:
         if use.element.compliance:
@@ -82,10 +70,7 @@ def compliances(model: Model) -> tuple[Compliance, ...]:
 
 
 def is_colocated(model: Model, output: Output, source: Input) -> bool | None:
-    """Tell whether an output is taken where an input acts, or rigidly joined to it.
-
-    The result is None if the output shows no motion of a place, or where the input acts at none.
-    """
+    """Tell whether an output is taken where an input acts; None if one of them is at no place."""
     model = in_one_way(model)
     (output,) = (each for each in model.outputs if each.name == output.name)
     starts, ends = _acted_on(model, source), _shown(model, output)
@@ -202,35 +187,12 @@ def rigid_counts(model: Model) -> Mapping[tuple[str, str], RigidCounts]:
     Springs, torsion springs, massless beams and resonance blocks are stiffened; blocks that contain another
     model stay as they are. Distributed models have no such limit, nor have models without any compliance.
     Zeros are None where nothing moves, as of a structure that only springs hold to ground.
-
-    >>> model = pipeline.loads('''
-    ... symflex = 1
-    ... elements.body = { type = "mass", at = "x", m = 2 }
-    ... elements.tail = { type = "mass", at = "y", m = 3 }
-    ... elements.link = { type = "spring", between = ["x", "y"], k = 12 }
-    ... inputs.F = { force = "x" }
-    ... outputs.X = "x"
-    ... ''')
-    >>> rigid_counts(model)
-    {('X', 'F'): (0, 2)}
-    >>> held = pipeline.loads('''
-    ... symflex = 1
-    ... elements.body = { type = "mass", at = "x", m = 2 }
-    ... elements.link = { type = "spring", between = ["x", "ground"], k = 12 }
-    ... inputs.F = { force = "x" }
-    ... outputs.X = "x"
-    ... ''')
-    >>> rigid_counts(held)
-    {('X', 'F'): (None, 0)}
     """
     return _limits(model, lambda use: use.element.stiffness, RESONANCES, max)
 
 
 def undamped_counts(model: Model) -> Mapping[tuple[str, str], Counts]:
-    """Return the zeros and poles of every transfer function as the coefficients of all dampers vanish.
-
-    Distributed models have none, and models without dampers.
-    """
+    """Return the zeros and poles as all dampers vanish; of distributed or undamped models none."""
     limits = _limits(model, lambda use: use.element.damping, (), min)
     return {pair: (zeros, poles) for pair, (zeros, poles) in limits.items() if zeros is not None}
 

@@ -98,10 +98,7 @@ class Study:
 
     @cached_property
     def exported(self) -> tuple[AnyTransferFunction, ...]:
-        """The same for code that solves networks, which is shorter than that of their formula.
-
-        Raises what :attr:`tfs` raises.
-        """
+        """The same for code that solves networks, which is shorter than that of their formula."""
         if not self.model.is_distributed:
             return self.tfs
         return pipeline.derive_as(self.model, self.pairs, solves=True)[0]
@@ -118,10 +115,7 @@ class Study:
 
     @property
     def bounds(self) -> tuple[AnyBoundFunction, ...]:
-        """The same functions with numbers.
-
-        Raises ModelError: SF229 when a parameter has no value.
-        """
+        """The same functions with numbers. Raises ModelError: SF229 when a parameter has no value."""
         return _result(self._bound)
 
     @cached_property
@@ -226,10 +220,7 @@ class Study:
         return tuple(attempt(partial(stable, gain)) for gain in gains)
 
     def loop(self, gain: str) -> AnyLoop:
-        """Return the characteristic function as a polynomial in a gain.
-
-        Raises ModelError: SF801 when it does not depend on the gain.
-        """
+        """Return the characteristic function as a polynomial in a gain; SF801 without that gain."""
         if gain not in self._characteristic:
             self._characteristic[gain] = attempt(lambda: characteristic_loop(self.model, gain))
         loop: AnyLoop | SymflexError = self._characteristic[gain]
@@ -275,13 +266,7 @@ def _result(result: T | SymflexError) -> T:
 
 
 def attempt(compute: Callable[[], T]) -> T | SymflexError:
-    """Return a result, or the error that says why there is none.
-
-    >>> def fail():
-    ...     raise SymflexError
-    >>> attempt(lambda: 1), attempt(fail)
-    (1, SymflexError())
-    """
+    """Return a result, or the error that says why there is none."""
     try:
         return compute()
     except SymflexError as error:

@@ -25,7 +25,6 @@ from symflex.codegen.program.evaluate import nearest_double
 
 FEW, DEEPEST = 3, 3
 """Powers up to which are products, and calls nested in each other from which a variable is made."""
-
 _SUM, _PRODUCT, _SIGN, _LEAF = range(4)
 
 REAL_FUNCTIONS = {
@@ -246,23 +245,18 @@ FUNCTIONS = frozenset(
     """.split()
 ).union(*PARTS)
 """What the code calls, and the types it uses."""
-
 LOCALS = frozenset("s p omega n i j w x g re im real imag sign value padded near is_near count".split())
 """Arguments and variables that every function has under these names."""
-
 RESERVED = KEYWORDS | MACROS  # what a member of the structure of parameters cannot be called
 TAKEN = RESERVED | FUNCTIONS | LOCALS  # what a variable cannot be called besides
 
 
 WIDTH = 88  # columns of generated C
-
 STEP = "    "
-
 S = Term("s", Kind.COMPLEX, varies=True)
 LANE = Term("w[j]", Kind.REAL, varies=True)
 AXIS_LANE = Term("w[j]", Kind.IMAGINARY, varies=True)
 """What s is: complex; one of several frequencies w of a response in real arithmetic; one of several j w."""
-
 _NUMBERED = re.compile(r"[a-z]_\d{1,9}")
 
 

@@ -195,10 +195,7 @@ def fits_lanes(program: tree.Piecewise) -> bool:
 
 
 def is_rational_in_lanes(program: tree.Piecewise) -> bool:
-    """Tell whether a program varies, has one branch, and calls no function of s but an exponential.
-
-    The imaginary axis has to mirror all roots of a product over roots.
-    """
+    """Tell whether lanes can compute a program's response: one branch, and no calls but of exponentials."""
     near = program.near
     values = (*(a.value for a in near.assignments), *near.values)
     calls = any(
@@ -212,10 +209,7 @@ def is_rational_in_lanes(program: tree.Piecewise) -> bool:
 
 
 def lanes(program: tree.Piecewise, members: Mapping[str, str]) -> list[str]:
-    """Return the body of the function that computes the frequency response, where :func:`fits_lanes`.
-
-    ``members`` are the structure's, by the parameters' names.
-    """
+    """Return the body of the function that computes the frequency response, where :func:`fits_lanes`."""
     outer = Body.of(members, LANE)
     (condition,) = program.conditions
     fixed = program.tests.needed([condition.scale])
@@ -252,10 +246,7 @@ def lanes(program: tree.Piecewise, members: Mapping[str, str]) -> list[str]:
 
 
 def rational_lanes(program: tree.Piecewise, members: Mapping[str, str]) -> list[str]:
-    """Return the body of the function that computes the response, where :func:`is_rational_in_lanes`.
-
-    ``members`` are the structure's, by the parameters' names.
-    """
+    """Return the body of the function that computes the response, where :func:`is_rational_in_lanes`."""
     outer = Body.of(members, AXIS_LANE)
     outer.assign(program.near.constants)
     block = outer.within(3)

@@ -24,10 +24,7 @@ from symflex.codegen.module_text import (
 from symflex.errors import Diagnostic, UsageError
 
 _FILE_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*")
-
-COMMENT = BlockComment("/*", "*/", " * ", ("??",))
-"""A comment of C; trigraphs begin with two question marks."""
-
+COMMENT = BlockComment("/*", "*/", " * ", ("??",))  # a comment of C; trigraphs begin with two question marks
 OUTLINE = Outline(WIDTH - 3, formula="  ")
 
 
@@ -200,10 +197,7 @@ class _Files:
 
 
 def helpers(code: str, parameters: str, order: int) -> str:
-    """Return the functions that some code calls.
-
-    ``parameters`` is the name of their type, ``order`` the largest of a differential equation.
-    """
+    """Return what some code calls: of a type of ``parameters``, and equations of at most an ``order``."""
     always, others = ["cx"], ""
     if re.search(r"\bLANES\b", code):
         own = [f for f in LANE_FUNCTIONS if re.search(rf"\blane_{f}\(", code)]

@@ -47,29 +47,21 @@ from symflex.transfer.nested_form import EnclosedNested
 
 CLOSED_TERMS = 60
 """Terms with kernels up to which a formula is short: twice as many are some hundred kilobytes of code."""
-
 BEYOND, FURTHER, ENOUGH = 5, Fraction(3, 2), Fraction(6, 5)
 """How far beyond the band roots are found: in modes, and in frequencies of a band given in Hz; and how
 far beyond it the highest of as many zeros as poles has to lie."""
 
 ROUNDS = 3  # how often roots are sought further away where what they leave is not smooth
 DIGITS = 36  # digits of the roots: more than two doubles hold
-
 FIRST_NODES, MOST_NODES = 24, 192
 """Points on the positive half of the band at which what is left is taken; the next try has twice as many."""
-
 SPARE, NEGLIGIBLE = 4, 2.0**-57
 """Last coefficients that count for nothing where there were points enough: their size changes no double."""
-
-GROUP = 12
-"""Zeros, and poles, that are multiplied before their products are divided: a division costs more."""
-
+GROUP = 12  # zeros, and poles, that are multiplied before their products are divided: a division costs more
 BITS = 160
 """Precision in which coefficients are summed: that of two doubles, and as much again for what cancels."""
-
 SLACK = 2.0**-40
 """How far beyond the band's end a rounded frequency may be, relatively; further away values are NaN."""
-
 LUMPED_END = Fraction(10_000)
 """End of the band [Hz] of a function with finitely many roots where nothing says another one."""
 
@@ -215,19 +207,16 @@ class BandForm:
     def program(self) -> Piecewise:
         """Return the program."""
         forge = Forge()
-        s = (
-            forge.label(forge.make(Within, forge.s, self.end * (1 + SLACK)), "z")
-            if self.is_limited
-            else forge.s
-        )
+        s = forge.s
+        if self.is_limited:
+            s = forge.label(forge.make(Within, s, self.end * (1 + SLACK)), "z")
         factors = [forge.constant(Fraction(self.gain))]
         base = forge.power(s, abs(self.power))
         factors += [base] if self.power > 0 else [forge.divide(forge.constant(1), base)] if self.power else []
         for first in range(0, max(len(self.zeros), len(self.poles)), GROUP):
             zeros, poles = (x[first : first + GROUP] for x in (self.zeros, self.poles))
-            above, below = (
-                forge.multiply([forge.make(r.with_children, [s]) for r in x]) for x in (zeros, poles)
-            )
+            sides = ([forge.make(r.with_children, [s]) for r in x] for x in (zeros, poles))
+            above, below = map(forge.multiply, sides)
             scale = prod((r.scale for r in poles), start=Fraction(1)) / prod(r.scale for r in zeros)
             factors.append(forge.multiply([forge.constant(scale), forge.divide(above, below)]))
         if self.is_limited:
@@ -237,9 +226,8 @@ class BandForm:
     def _exponent(self, forge: Forge, s: int) -> int:
         """Return q(s)."""
         end = Fraction(self.end)
-        twice = forge.label(
-            forge.add([forge.constant(2), forge.multiply([forge.constant(4 / end**2), s, s])]), "w"
-        )
+        square = forge.multiply([forge.constant(4 / end**2), s, s])
+        twice = forge.label(forge.add([forge.constant(2), square]), "w")
         parts = []
         if self.even:
             parts.append(_clenshaw(forge, self.even, twice))
@@ -315,10 +303,7 @@ def _located(bound: AnyBoundFunction, up_to: Fraction | None) -> tuple[PoleZeroM
 
 
 def _split(roots: Sequence[Root]) -> tuple[int, tuple[SplitRoot, ...]]:
-    """Return how many roots are zero, and the others, each as often as it occurs, images once.
-
-    What cannot be told from zero is taken for it: values measured show whether it is.
-    """
+    """Return how many roots are zero, or not told from it, and the others, each as often as it occurs."""
     split = []
     at_zero = [root for root in roots if root.is_zero or root.enclosure().contains(0)]
     for group in groups([root for root in roots if root not in at_zero]):

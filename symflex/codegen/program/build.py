@@ -45,7 +45,6 @@ if TYPE_CHECKING:
 
 
 TERM_LIMIT = 20_000  # terms a program may be made of; beyond that its text would be megabytes
-
 HEADROOM, FAR_FROM = 180, 1e15
 """Decades a power of s may reach in double precision, of 308 in all: coefficients have the rest; and
 abs(s) [rad/s] below which they could overflow where a far branch is made."""
@@ -54,10 +53,7 @@ PI = "pi"
 
 
 def build_program(tf: TransferFunction, form: str | None = None) -> Piecewise:
-    """Return the program of one form, ``closed`` or ``factors``; by default the first there is.
-
-    Raises BudgetError: SF503 when the program would be too large.
-    """
+    """Return the program of one form, by default the first there is; SF503 if it would be too large."""
     forms = available_forms(tf)
     if not forms:
         message = f"a program for {tf.name} would have more than {TERM_LIMIT} terms"
@@ -76,10 +72,7 @@ def build_program(tf: TransferFunction, form: str | None = None) -> Piecewise:
 
 
 def forge_of(model: Model) -> Forge:
-    """Return a workbench on which a root of s stands in place of s where the model has one.
-
-    Raises ModelError: SF910 where that is not made of square roots.
-    """
+    """Return a workbench for functions of s, or of a root of it; SF910 if that is no square root."""
     if (root := model.root) is None:
         return Forge()
     if root.order & (root.order - 1):
@@ -265,10 +258,7 @@ OPERATION_LIMIT = 100_000  # operations a program may have; beyond that its text
 
 
 def build_nested(tf: NestedTransferFunction) -> Piecewise:
-    """Return the program of a nested transfer function; that of a distributed model solves its network.
-
-    Raises BudgetError: SF503 when it would be too large.
-    """
+    """Return the program of a nested function, or one that solves the network; SF503 if it is too large."""
     if not tf.is_rational:
         return _build_solved(tf, tf.cut.network)
     size = tf.size

@@ -52,27 +52,20 @@ from symflex.transfer.lowest_terms import cancel
 
 REACHES = (3.0, 2.0, 4.5)
 """Sizes of the largest exponent below which series are used; which serves best is measured."""
-
 CHOOSING, TOGETHER = 3, 2
 """Base lengths up to which every one may have series by itself, eight pieces for three of them, and those up
 to which that is not more than a module should hold; of more it is measured whether it serves."""
 
 CUTS = 12  # how often one base length is cut by another; two spans and a sensor need one or two
-
 LOCAL_TERMS = 30_000
 """Terms looked at while series for small arguments are made free of wavenumbers: some ten seconds."""
-
 REAL_TERMS = 1000
 """Terms of numerator and denominator up to which a program in real arithmetic is made besides."""
-
 LOWEST, HIGHEST, STEPS = 1e-9, 1e12, 4000
 """Frequencies [rad/s] at which it is looked which arguments are small together."""
-
 CONFLUENT, CIRCLE = 2.0, 24
 """Twice the squared distance of a pair's arguments below which means over a circle are taken, and points."""
-
-LONE = 0.25
-"""Part of the series' reach up to which the smaller of a pair's arguments has a series by itself."""
+LONE = 0.25  # part of the series' reach up to which the smaller of a pair's arguments has a series by itself
 
 BASES: dict[str, Callable[[Iterable[Sequence[tuple[int, int]]]], LocalBasis]] = {
     "wave": wave_basis,
@@ -91,10 +84,7 @@ class SeriesUse:
 
 
 def series_uses(tf: TransferFunction, *, is_measured: bool = True) -> tuple[SeriesUse, ...]:
-    """Return what is worth trying, the usual one first; the shortest one where it is measured what it loses.
-
-    What one of several lengths gains from a series by itself is much where it is far shorter than the others.
-    """
+    """Return what is worth trying, the usual one first; before it, what tells short lengths apart."""
     lengths = {(k.dispersion, k.length) for k in tf.kernels.kernels if k.wavenumber}
     shortest = (
         [SeriesUse(REACHES[0], TOGETHER)] if is_measured and TOGETHER < len(lengths) <= CHOOSING else []
@@ -114,10 +104,7 @@ class Pieces:
     _programs: dict[SeriesUse, Piecewise] = field(default_factory=dict)
 
     def of_s(self, use: SeriesUse) -> Piecewise:
-        """Return the program for complex s.
-
-        Raises BudgetError: SF503 when it would be too large.
-        """
+        """Return the program for complex s; SF503 when it would be too large."""
         if self.tf.length > TERM_LIMIT:
             message = f"a program for {self.tf.name} would have more than {TERM_LIMIT} terms"
             raise BudgetError(Diagnostic("SF503", message, None, "keep repeated sums in [definitions]"))
@@ -185,16 +172,12 @@ class _Lone(_Group):
 
 @dataclass(frozen=True, eq=False)
 class _Half:
-    """A numerator or denominator: powers of wavenumbers times a sum of exponentials.
-
-    ``far`` is the sum in the form :meth:`Site.exponential_sum` wants, without its common number; ``unit`` is
-    that.
-    """
+    """A numerator or denominator: powers of wavenumbers times a sum of exponentials."""
 
     terms: KernelSum
     waves: Factored
-    far: KernelSum
-    unit: Fraction
+    far: KernelSum  # the form that :meth:`Site.exponential_sum` wants
+    unit: Fraction  # the common number that ``far`` is without
 
 
 class _PieceMaker:
@@ -546,10 +529,7 @@ class _PieceMaker:
     def _derivatives(
         self, terms: KernelSum, near: Sequence[_Group]
     ) -> Iterator[tuple[tuple[int, ...], KernelSum]]:
-        """Yield the derivatives of a sum with respect to lengths at zero that do not vanish, by their orders.
-
-        Those of the first length are taken once for all orders of the others.
-        """
+        """Yield the derivatives with respect to lengths at zero that do not vanish, by their orders."""
         if not near:
             yield (), terms
             return
@@ -579,10 +559,7 @@ class _PieceMaker:
         return {k: p for k, p in derivative.items() if len(p)}
 
     def _reduced(self, value: Factored, lone: Sequence[Dispersion]) -> Factored:
-        """Return a value in normal form, free of wavenumbers where it is symmetric in them.
-
-        Values of pairs whose smaller wavenumber alone is expanded are made free of its negative powers.
-        """
+        """Return a value in normal form, free of wavenumbers, or of negative powers of the ``lone`` ones."""
         for dispersion in self.table.dispersions:
             if dispersion.kind == "pair" and not value.is_zero:
                 is_lone = any(d is dispersion for d in lone)

@@ -36,14 +36,7 @@ NUMPY_FUNCTIONS = {
 
 
 def nearest_double(value: Fraction, pi_power: int = 0) -> float:
-    """Return the double nearest to ``value * pi**pi_power``.
-
-    Raises ModelError: SF233 when it is too large or too small for double precision.
-
-    >>> from fractions import Fraction
-    >>> nearest_double(Fraction(1, 10)), nearest_double(Fraction(1), 1)
-    (0.1, 3.141592653589793)
-    """
+    """Return the double nearest to ``value * pi**pi_power``; SF233 when there is none."""
     if value == 0:
         return 0.0
     try:
@@ -99,10 +92,7 @@ def evaluate(
 def numbers_of_pieces(
     program: tree.Piecewise, point: Values, given: Mapping[str, Values]
 ) -> NDArray[np.int64]:
-    """Return, for every value of the argument, the number that the conditions make of it.
-
-    It and the parameters, given by name, are numbers or arrays that broadcast.
-    """
+    """Return the number that the conditions make of every point, which broadcasts with the parameters."""
     run = _ProgramRun(point, given, program.tests)
     number = np.zeros(np.shape(point), dtype=int)
     for i, condition in enumerate(program.conditions):
@@ -227,8 +217,7 @@ class _ProgramRun:
         raise TypeError(type(node).__name__)
 
 
-Values = Any
-"""A number, an array of numbers, or a list of these: what numpy calculates with, one way for all."""
+Values = Any  # a number, an array of numbers, or a list of these: what numpy calculates with, one way for all
 
 
 def complex_exp(z: Values) -> Values:

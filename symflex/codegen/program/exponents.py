@@ -32,10 +32,8 @@ Term = tuple[tuple[tuple[int, int], ...], int]
 is positive."""
 
 Key = tuple[Term, ...]  # one term per family
-
 KernelSum = dict[Key, "fmpz_mpoly"]
 """Products of terms with their coefficients, which are free of the kernels that have families."""
-
 Powers = tuple[tuple[str, int], ...]  # functions of one argument, and exponents
 
 
@@ -174,10 +172,8 @@ def derivative_at_zero(term: Term, position: int, order: int) -> tuple[tuple[Ter
 Gaussian = tuple[Fraction, Fraction]
 ONE: Gaussian = (Fraction(1), Fraction(0))
 TURN: Gaussian = (Fraction(0), Fraction(1))
-
 RealTerm = tuple[tuple[tuple[Fraction, Fraction], ...], int]
 """As :data:`Term`, with the magnitudes of wavenumbers times lengths."""
-
 RealKey = tuple[RealTerm, ...]
 
 
@@ -249,10 +245,7 @@ class RealAxis:
         return result, turn % 4
 
     def real_sum(self, terms: KernelSum, waves: Factored, families: Sequence[Family]) -> RealSum | None:
-        """Return a sum, times a product of powers of wavenumbers, in real terms.
-
-        The result is None if it is not real up to a power of j.
-        """
+        """Return a sum times powers of wavenumbers in real terms; None unless it is real or imaginary."""
         powers = {}
         for factor, exponent in waves.factors:
             if len(factor) > 1:

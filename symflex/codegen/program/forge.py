@@ -58,9 +58,8 @@ class Forge:
             return self._numbers[node]
         x = len(self.nodes)
         self.nodes.append(node)
-        own = {tree.Laplace: Depends.S, tree.InverseLaplace: Depends.INVERSE}.get(
-            type(node), Depends.PARAMETERS
-        )
+        leaves = {tree.Laplace: Depends.S, tree.InverseLaplace: Depends.INVERSE}
+        own = leaves.get(type(node), Depends.PARAMETERS)
         self.depends.append(reduce(or_, (self.depends[o] for o in self.operands(x)), own))
         self._numbers[node] = x
         return x
@@ -196,8 +195,7 @@ class Forge:
         return x
 
 
-DEEPEST = 8
-"""Nesting from which an intermediate value gets a name, for the reader's sake and the parser's."""
+DEEPEST = 8  # nesting from which an intermediate value gets a name, for the reader's sake and the parser's
 
 
 def schedule(

@@ -25,16 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class CodeNode:
-    """Base of all nodes.
-
-    Operands are nodes. In the table of a :class:`~symflex.codegen.program.forge.Forge` they are numbers of
-    nodes, which stand before.
-
-    >>> Divide(Laplace(), ParameterValue("k")).children
-    (Laplace(), ParameterValue(name='k'))
-    >>> Divide(Laplace(), ParameterValue("k")).with_children([Laplace(), Laplace()])
-    Divide(numerator=Laplace(), denominator=Laplace())
-    """
+    """Base of all nodes; in the table of a forge operands are numbers of nodes, which stand before."""
 
     OPERANDS: ClassVar[tuple[str, ...]] = ()
     """The fields that contain operands, or tuples of them: nodes, by their types."""
@@ -266,10 +257,7 @@ class SolutionSlopes(CodeNode):
 
 @dataclass(frozen=True, slots=True)
 class Solve(CodeNode):
-    """What an output of a network of line elements is per unit of an input.
-
-    See :mod:`symflex.algebra.line_networks`.
-    """
+    """What an output of a network is per unit of an input; see :mod:`symflex.algebra.line_networks`."""
 
     entries: tuple[CodeNode, ...]  # the values of the table's entries
     network: Table  # which entries stand where
@@ -293,10 +281,7 @@ class Tip:
 
 @dataclass(frozen=True, slots=True)
 class FundamentalMinors(CodeNode):
-    """Minors of a fundamental matrix whose law varies along x, as a list.
-
-    See :func:`symflex.along.doubles.fundamental_minors`.
-    """
+    """Minors, as a list, by :func:`symflex.along.doubles.fundamental_minors`, of a law along x."""
 
     start: CodeNode  # of x
     length: CodeNode

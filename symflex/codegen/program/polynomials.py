@@ -115,7 +115,6 @@ def _nest(forge: Forge, terms: Mapping[Monomial, int], values: Sequence[int]) ->
 
 
 FACTOR_LIMIT = 400  # number of terms up to which a polynomial is factored
-
 WORK_LIMIT, DEPTH_LIMIT = 300_000_000, 150
 """Exponents looked at before the search for structure is given up, about two seconds, and splits inside one
 another: a polynomial of so high a degree is better nested by powers of s."""
@@ -168,10 +167,7 @@ def plan_recurrences(
 
 
 def express(forge: Forge, plan: RecurrencePlan, images: RingValues) -> list[tuple[int, int]]:
-    """Return the expressions of a plan's polynomials, and their degrees in s.
-
-    In the far branch the expressions are those of ``polynomial / s**degree``.
-    """
+    """Return the expressions of a plan's polynomials, far ones over ``s**degree``, and their degrees."""
     made: list[tuple[int, int]] = []
 
     def scaled(part: Scaled) -> tuple[int, int]:

@@ -32,10 +32,7 @@ class LocalBasis:
     coefficients: tuple[Mapping[tuple[int, int], int], ...]
 
     def series(self, solution: int, size: float) -> tuple[Fraction, ...]:
-        """Return the coefficients of powers of ``(w x)^step`` in a solution over ``x^solution``.
-
-        It is used up to an exponent of some size.
-        """
+        """Return the coefficients of powers of ``(w x)^step`` in a solution, for exponents up to a size."""
         whole = [c.get((0, 0), 0) for c in self.coefficients]
         derivatives = [int(i == solution) for i in range(self.order)]
         coefficients: list[Fraction] = []
@@ -96,14 +93,9 @@ def pair_basis(exponents: Iterable[Sequence[tuple[int, int]]]) -> LocalBasis:
     whole = prod((_orbit(a, b) for a, b in orbits), start=SYMMETRIC.constant(1))
     powers = by_powers(SYMMETRIC, whole)
     order = max(powers)
-    return LocalBasis(
-        1,
-        order,
-        tuple(
-            {(int(p), int(q)): int(c) for (_, p, q), c in powers[n].terms()} if n in powers else {}
-            for n in range(order)
-        ),
-    )
+    terms = ((powers[n].terms() if n in powers else ()) for n in range(order))
+    own = tuple({(int(p), int(q)): int(c) for (_, p, q), c in each} for each in terms)
+    return LocalBasis(1, order, own)
 
 
 SYMMETRIC = Ring(("x", "e", "f"))

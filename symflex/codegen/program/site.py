@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from symflex.codegen.program.exponents import Family, Key, RealAxis, RealKey, RealSum, RealTerm, Term
 
 MINUS_J = (0, -1)
-
 LEAST = Fraction(1, 2**60)  # part of the root of c_0 below which c_2 does not count
 Scales = dict[tuple[int, int], int]  # per family and length, the exponent that is divided out of a sum
 
@@ -132,12 +131,10 @@ class Site:
         c0 = self.coefficient(law)
         # Less than a rounding of the result, and not zero where c_2 is.
         least = forge.multiply([forge.constant(LEAST), forge.apply("sqrt", forge.apply("abs", c0))])
-        middle = forge.add(
-            [forge.multiply([forge.constant(Fraction(-1, 2)), self.coefficient(law, 2)]), least]
-        )
-        inside = forge.add(
-            [forge.constant(1), forge.negate(forge.divide(c0, forge.multiply([middle, middle])))]
-        )
+        half = forge.multiply([forge.constant(Fraction(-1, 2)), self.coefficient(law, 2)])
+        middle = forge.add([half, least])
+        ratio = forge.divide(c0, forge.multiply([middle, middle]))
+        inside = forge.add([forge.constant(1), forge.negate(ratio)])
         formula = forge.multiply([middle, forge.add([forge.constant(1), self._root(inside)])])
         large = forge.make(LargerRoot, formula, middle, c0)
         first, second = self._root(large), self._root(forge.divide(c0, large))
@@ -208,10 +205,7 @@ class Site:
     # ------------------------------------------------------------------------------------ local solutions
 
     def local(self, basis: LocalBasis, dispersion: Dispersion, length: Factored, k: int, size: float) -> int:
-        """Return solution k of an equation at a length, for exponents up to a size.
-
-        On the basis of a wave, a pair stands for its smaller wavenumber.
-        """
+        """Return solution k of an equation at a length; a wave's is for a pair's smaller wavenumber."""
         forge, x = self.forge, self.length(length)
         if basis.step == 1:
             e, f = forge.negate(self.coefficient(dispersion, 2)), self.coefficient(dispersion)

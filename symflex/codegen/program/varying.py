@@ -30,11 +30,7 @@ from symflex.transfer.of_model import followed_along_x
 
 
 def build_varying(tf: TransferFunction) -> Piecewise:
-    """Return the program for complex s.
-
-    Uniform members beside those that taper are followed along x as well. Raises ModelError: SF910 beside
-    members of frames.
-    """
+    """Return the program for complex s, uniform members followed along x too; SF910 beside frame members."""
     if _has_uniform(tf):
         tf = followed_along_x(tf)
     if _has_uniform(tf):

@@ -32,25 +32,18 @@ from symflex.transfer.bound import EnclosedTransferFunction
 from symflex.transfer.of_model import derive_for_roots, derive_nested
 
 DEFAULT_BAND = (Fraction(1, 10), Fraction(10_000))  # hz
-
 MOST_WAVES = 300.0
 """Size of the largest exponent of a member that tapers up to which the error is measured by default."""
-
 SAMPLES = 400  # frequencies at which the error is measured, besides those around poles and zeros
-
 ASIDE = (0.0, 1e-9, 1e-6, 1e-3, 1e-2)
 """Relative distances from a pole's or zero's frequency at which the error is measured as well."""
-
-REACH = np.logspace(-9, 12, 85)
-"""Frequencies [rad/s] at which a form may neither overflow nor lose the value."""
-
+REACH = np.logspace(-9, 12, 85)  # frequencies [rad/s] at which a form may neither overflow nor lose the value
 SIMILAR, MUCH_LONGER = 2.0, 2
 """Forms whose errors differ by less than this factor count as equally accurate, and the faster one is taken;
 how many times the operations of the shortest form recurrences may take when nothing can be measured."""
 
 LONG = 500  # terms from which coefficients of powers of s are not expanded if another form is accurate
 ACCURATE = 1e-14  # error below which no other form is looked for: some fifty roundings of a double
-
 SCAN, MOST_EXTREMES = 3000, 40
 """Frequencies over the band among which a distributed system's resonances and antiresonances are sought, and
 how many of each the error is measured around: the first and the last ones of more."""
@@ -60,19 +53,14 @@ LIGHT_NESTED, LEAST = 600, 0.05
 at in any case; of a network of beams a value takes 10 ms and more."""
 
 NAMED = 6  # parameters without value that are named
-
 BESIDE_ROOTS = (0.0, 1e-9, 1e-4)
 """Relative distances from a root's frequency at which a band form is measured: it has all digits of each."""
-
 BAND_SHARE = 8
 """One in so many of the usual samples shows how smooth the rest of a band form with known roots is."""
-
 ASIDE_OF_AXIS, HEIGHTS = 0.1, np.linspace(0.02, 0.98, 5)
 """Distance from the imaginary axis, and heights, in bands, at which a band form is measured too."""
-
 AT_A_POLE = 1e-14
 """Relative distance from a pole's frequency within which infinity may stand for the value: some roundings."""
-
 TINY = 1e-307  # what is smaller has no more digits in double precision
 
 
@@ -129,12 +117,8 @@ def choose_programs(
 
     The second one is for the frequency response, of undamped distributed systems only: where the language
     ``has_real`` arithmetic for it, it computes that of the angular frequency, else it is the first one.
-    Without values for all parameters nothing can be measured; recurrences are taken unless another form is
-    much shorter.
-
-    The band is that of the model's ``[analysis]``, else 0.1 Hz to 10 kHz; ``samples`` are spaced evenly on a
-    logarithmic scale, and more are taken near poles and zeros. SF503 when every program
-    would be too large, SF233 when a number does not fit in double precision.
+    Without values nothing can be measured; recurrences are taken unless another form is much shorter. Raises
+    SF503 when every program would be too large, SF233 when a number does not fit in double precision.
     """
     if tf.is_nameless and not any(law.matrix for law in tf.kernels.dispersions):
         # Exponents have no formula: the members' equations are solved, but where these are followed along x.
@@ -195,16 +179,13 @@ def measure_values(
 
 @dataclass(frozen=True, slots=True)
 class _Gauge:
-    """What the programs of one transfer function are measured against.
-
-    Without ``references`` nothing can be measured, for the ``reason`` given.
-    """
+    """What the programs of one transfer function are measured against."""
 
     tf: AnyTransferFunction
     band: tuple[Fraction, Fraction]
     pieces: Pieces | None  # of a distributed system
-    references: References | None
-    reason: str = ""
+    references: References | None  # without them nothing can be measured
+    reason: str = ""  # why
 
     def verified(self, form: str, error: float | None) -> Verification:
         samples = 0 if self.references is None else len(self.references.s)
@@ -315,10 +296,7 @@ def _program(tf: TransferFunction, form: str) -> Piecewise | None:
 def sample_frequencies(
     bound: AnyBoundFunction, band_hz: tuple[Fraction, Fraction], samples: int, pieces: Pieces | None = None
 ) -> NDArray[np.float64]:
-    """Return frequencies [Hz] over a band, denser around those of poles and zeros.
-
-    The ``pieces`` are those of a distributed system where it has been begun to make them.
-    """
+    """Return frequencies [Hz] over a band, denser around those of poles and zeros."""
     aside = ASIDE[::2] if bound.source.solves_network else ASIDE
     if bound.is_zero:
         return _frequencies(band_hz, samples, [], aside)
@@ -402,10 +380,7 @@ def _roots(coefficients: Sequence[acb], *, is_scaled: bool = False) -> NDArray[n
 
 
 class References:
-    """Enclosures of a transfer function at points of the imaginary axis, or elsewhere.
-
-    The function is bound to the declared values.
-    """
+    """Enclosures of a transfer function, bound to the declared values, at points."""
 
     def __init__(self, values: EnclosedValues, points: NDArray[Any]) -> None:
         self.bound = values.bound

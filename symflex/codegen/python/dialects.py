@@ -45,9 +45,7 @@ COPIED = (
     evaluate.mean_over_circle,
 )
 """Functions with which programs are measured; modules get copies where they have no others."""
-
 _COPIES = ("copies",)
-
 _OWN = "|".join(f.__name__ for f in COPIED)  # names of functions that call each other
 
 

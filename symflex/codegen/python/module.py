@@ -34,7 +34,6 @@ LINTS = {
     "PLR0915, PLR2004, PLW2901, RUF001, RUF002, RUF005, RUF100",
 }
 """Rules of ruff that modules do not follow, whose names and texts are the model's."""
-
 LITERAL_WIDTH = 60  # characters of a string literal on one line
 
 MEASURED = (

@@ -30,10 +30,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PrivateText(ABC):
-    """Prints the private functions behind one transfer function.
-
-    Their names begin with what a private function is, so that ``A_over_F_0`` may be another public function.
-    """
+    """Prints the private functions behind one transfer function, whose names begin with what they are."""
 
     program: tree.Piecewise  # what they compute
     name: str  # identifier of the public function whose programs these are
@@ -397,20 +394,14 @@ def statement(target: str, value: str, indent: str) -> list[str]:
 
 Cases = tuple[tuple[tuple[int, bool], ...], ...]
 """Alternatives; each is a number of tests with the results they must have."""
-
 SIZES = np.logspace(-12, 60, 145)
 DIRECTIONS: NDArray[np.complex128] = np.exp(1j * np.array([0.9, -0.9, 2.2, -2.2]))
 """Frequencies [rad/s] and directions, one in every quadrant and on no axis, among which places are sought."""
-
-INWARDS = 1.5
-"""Decades between a place and the lower end of the range that a piece serves, or its only end."""
+INWARDS = 1.5  # decades between a place and the lower end of the range that a piece serves, or its only end
 
 
 def in_pieces(program: Piecewise) -> Piecewise:
-    """Return a program whose pieces are quotients that can be computed without the others.
-
-    The denominator of a lumped one is the number one.
-    """
+    """Return a program whose pieces are quotients by themselves; a lumped one's denominator is one."""
     if not program.is_lumped:
         return program
     needs = (piece.code.needed(piece.code.values) for piece in program.code)

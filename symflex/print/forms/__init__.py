@@ -247,10 +247,7 @@ def _explained(tf: TransferFunction, made: PrintedForm) -> PrintedForm:
 def print_forms(
     tfs: Sequence[AnyTransferFunction], form: str | None = None, digits: int = 6
 ) -> tuple[tuple[PrintedForm, ...], tuple[str, ...]]:
-    """Return all functions in the named form, and a sentence on each that lacks it, in its default form.
-
-    The arguments are those of :func:`print_form`. Raises UsageError: SF902 when none of them has the form.
-    """
+    """Return all functions in a form, and a sentence on each that lacks it; SF902 when none has it."""
     printed: list[PrintedForm] = []
     sentences: list[str] = []
     refusal: UsageError | None = None
@@ -278,22 +275,6 @@ def with_shared_denominators(
     """Return forms in which each long denominator that several share is a name, which the first explains.
 
     All of them are read back with that name. Raises InternalError: SF992 as :func:`print_form` does.
-
-    >>> from symflex import pipeline
-    >>> from symflex.print.text import form_text
-    >>> model = pipeline.loads('''
-    ... symflex = 1
-    ... inputs.u = {}
-    ... signals.p = "u/(mass*s^2*(T*s + 1) + damping*s*(T*s + 1) + stiffness + integral_gain/s)"
-    ... outputs = { P = "p", V = "s*p" }
-    ... parameters = { mass = {}, T = {}, damping = {}, stiffness = {}, integral_gain = {} }
-    ... ''')
-    >>> tfs = pipeline.derive_all(model)
-    >>> for tf, form in zip(tfs, with_shared_denominators(tfs, print_forms(tfs)[0])):
-    ...     print(form_text(tf, form))
-    P/u = s/D
-      where D = s^2*(T*s + 1)*(mass*s + damping) + stiffness*s + integral_gain
-    V/u = s^2/D
     """
     groups: dict[object, list[int]] = {}
     for i, (tf, form) in enumerate(zip(tfs, forms, strict=True)):
@@ -320,18 +301,7 @@ def with_shared_denominators(
 
 
 def terms_to_print(tf: AnyTransferFunction, form: str | None = None) -> int:
-    """Return about how many terms a symbolic form prints; 0 where that is not known, or few in any case.
-
-    >>> from symflex import pipeline
-    >>> model = pipeline.loads('''
-    ... symflex = 1
-    ... parameters = { a = {}, b = {} }
-    ... inputs.u = {}
-    ... outputs.y = "u/(s^2 + a*s + b)"
-    ... ''')
-    >>> terms_to_print(pipeline.derive_all(model)[0], "polynomial")
-    3
-    """
+    """Return about how many terms a symbolic form prints; 0 where that is not known, or few in any case."""
     if not (tf.is_reduced and tf.is_rational) or form == "zpk":
         return 0
     closed = tf.closed if form in (None, "definitions") and tf.length > LARGE else None

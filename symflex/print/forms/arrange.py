@@ -180,11 +180,7 @@ class Arranger:
                     yield sum_of([self._group(others), self._group({m: terms[m] for m in terms if m[i]})])
 
     def separated(self, polynomial: fmpz_mpoly, *, by_functions: bool) -> Expression:
-        """Return a sum of coefficients times sums of functions.
-
-        ``by_functions`` collects the coefficients of every product of functions, otherwise the functions that
-        one monomial multiplies are collected.
-        """
+        """Return a sum of coefficients times functions, collected by functions or by monomials."""
         parts: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
         for monomial, coefficient in _terms(self.closed(polynomial)).items():
             key = tuple(e if f == by_functions else 0 for f, e in zip(self._is_apart, monomial, strict=True))
@@ -394,15 +390,11 @@ FEW = 40  # number of terms up to which the open loop is looked for in a closed 
 SECOND = 2  # degree in s up to which a polynomial prints by powers of s
 NESTED = 1.3  # how many times as long as a nested polynomial one by powers of s may be
 READABLE = 4  # depth of parentheses that reads easily
-
 Sides = tuple[Expression, Expression]
 
 
 class ProductPrinter:
-    """Prints products over one ring; a sum met again is not arranged again.
-
-    With the generator of the imaginary unit given, sums are split into real and imaginary part.
-    """
+    """Prints products over one ring; a sum met again is not arranged again."""
 
     def __init__(self, arranger: Arranger, imaginary: str = "") -> None:
         self.arranger = arranger
@@ -530,10 +522,7 @@ def with_squares(ring: Ring, polynomial: fmpz_mpoly) -> Factored:
 
 
 def reading(expression: Expression, *, are_quadratics: bool = True) -> float:
-    """Return the length of an expression, and more of what is nested in it as ``s*(a*s + b) + c``.
-
-    So are ``omega*(2*zeta*s + omega) + s^2``, and all quadratics in s that are not written by its powers.
-    """
+    """Return the length of an expression, and more of what is nested in it as ``s*(a*s + b) + c``."""
     sums = {e for e in nodes(expression) if isinstance(e, Sum) and any(map(_is_nested, e.terms))}
     if are_quadratics:
         sums |= {e for e in nodes(expression) if isinstance(e, Sum) and _is_quadratic(e)}
@@ -541,10 +530,7 @@ def reading(expression: Expression, *, are_quadratics: bool = True) -> float:
 
 
 def _is_quadratic(total: Sum) -> bool:
-    """Tell whether a sum has degree 2 in s and is not by its powers, as ``a*(b*s^2 + 1) + c`` is not.
-
-    ``m*n*s^2 + (b*s + k)*(m + n)`` says more than its powers.
-    """
+    """Tell whether a sum has degree 2 in s and is not by its powers, as ``a*(b*s^2 + 1) + c`` is not."""
     if power_of_s(total) != SECOND:
         return False
     factors = [[f for f in _factors(t) if not isinstance(f, Number)] for t in total.terms]
@@ -618,10 +604,7 @@ def _symbols(value: Factored) -> int:
 
 
 def shortest_sides(printer: ProductPrinter, value: Factored, laws: Mapping[str, Factored]) -> Sides:
-    """Return the sides of a product, powers of wavenumbers traded for s and parameters if that is shorter.
-
-    ``laws`` give, for a wavenumber, a product of its power with s and parameters that is one.
-    """
+    """Return the sides of a product, powers of wavenumbers traded by their ``laws`` if that is shorter."""
     tried = [value]
     for name, one in laws.items():
         if value.depends_on(name):

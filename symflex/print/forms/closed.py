@@ -65,10 +65,7 @@ class _NoClosedFormError(Exception):
 def closed_entries(
     tf: TransferFunction, law: Dispersion, places: Places, naming: Naming, printer: ProductPrinter
 ) -> tuple[Line, ...]:
-    """Return what entries of a fundamental matrix are, and then what the names in these are.
-
-    Nothing is returned where no closed form is known.
-    """
+    """Return what entries of a fundamental matrix are, and the names in them; nothing if none is known."""
     families = {(2, False): _wave, (2, True): _wave_from_tip, (4, False): _beam, (4, True): _beam_from_tip}
     lines = families.get((law.order, law.singular is not None))
     if lines is None:

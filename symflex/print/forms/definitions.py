@@ -53,19 +53,13 @@ def definitions_form(tf: TransferFunction) -> PrintedForm:
 
 
 def shows_origin(ratio: Factored, num: Expression, den: Expression) -> bool:
-    """Tell whether a fraction shows a function's zeros and poles at s = 0 as powers of s.
-
-    In ``beta*(s + a) - a*beta_1 - a*beta_2`` with ``beta = beta_1 + beta_2`` a factor s is hidden.
-    """
+    """Tell whether zeros and poles at s = 0 are seen as powers of s: not in ``b*(s + a) - a*b``."""
     at_zero = ratio.exponent_of(ratio.ring.generator(LAPLACE))
     return power_of_s(num, min) - power_of_s(den, min) == at_zero
 
 
 def tidied_sum(part: Expression, order: Mapping[str, int]) -> Expression:
-    """Return a sum by powers of s, with what all its terms share in front: ``R*(C*s + 1)``.
-
-    In a product, what is no sum stands before the sums.
-    """
+    """Return a sum by powers of s, with what all its terms share in front: ``R*(C*s + 1)``."""
     part = _by_powers(part, order) if isinstance(part, Sum) else part
     if isinstance(part, Product):
         places = [n for n, f in enumerate(part.factors) if isinstance(f, Sum)] or [0]

@@ -33,10 +33,7 @@ TWO = 2
 
 
 def economical(tf: TransferFunction) -> TransferFunction:
-    """Return the same function in kernels of whole lengths where it can be.
-
-    ``sinh(q)*cosh(q)`` of ``q = gamma*l/2`` becomes ``sinh(q)/2`` of ``q = gamma*l``.
-    """
+    """Return a function in kernels of whole lengths, ``sinh(2*q)/2`` for ``sinh(q)*cosh(q)``, if it can."""
     if any(len(factor) > LARGE for factor, _ in tf.ratio.factors):
         return tf
     tf = _without_wavenumbers(tf)
@@ -153,10 +150,7 @@ def _without_wavenumbers(tf: TransferFunction) -> TransferFunction:
 
 
 def added(tf: TransferFunction) -> TransferFunction:
-    """Return the same function with kernels of sums of its lengths in factors that are shorter so.
-
-    The kernels of the two lengths and of their sum are not independent, which is for print alone.
-    """
+    """Return the same function with kernels of sums of its lengths in factors that are shorter so."""
     if any(len(factor) > LARGE for factor, _ in tf.ratio.factors):
         return tf
     used = tf.ratio.ring.used_in(f for f, _ in tf.ratio.factors)

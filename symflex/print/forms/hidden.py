@@ -28,16 +28,12 @@ from symflex.print.read_back import read_hidden
 from symflex.transfer import AnyTransferFunction, TransferFunction
 
 Hidden = tuple[tuple["Expression", int], ...]
-
 MULTIPLES: Final = tuple(Fraction(x) for x in ("1", "2", "1/2", "4", "1/4", "8", "1/8", "3", "1/3"))
 """Multiples of a length that arguments have: forms halve and double lengths, and print thirds."""
 
 
 def hidden_expressions(tf: AnyTransferFunction) -> Hidden:
-    """Return the cancelled factors in s, by descending powers of s, with their multiplicities.
-
-    Kernels are written out, ``cosh(l*sqrt(s/(2*sqrt(E*I/(rho*A)))))``: names of a form mean nothing here.
-    """
+    """Return the cancelled factors in s with their multiplicities, kernels written out."""
     if not tf.is_reduced:
         return ()
     factors = _spelled_out(tf)
@@ -57,17 +53,7 @@ def _spelled_out(tf: TransferFunction) -> Hidden:
 
 
 def with_hidden(tf: AnyTransferFunction, form: PrintedForm) -> tuple[PrintedForm, Hidden]:
-    """Return a form with lines for all names that cancelled factors need besides its own, and these factors.
-
-    >>> from symflex import pipeline
-    >>> from symflex.print.forms import print_form
-    >>> from symflex.expressions import format_expression
-    >>> model = pipeline.load("derivations/classics/clamped_clamped.toml")
-    >>> tf = next(tf for tf in pipeline.derive_all(model) if tf.name == "M_end/p")
-    >>> form, ((factor, times),) = with_hidden(tf, print_form(tf))
-    >>> format_expression(factor), times, [name for name, _ in form.where]
-    ('sinh(q) - sin(q)', 1, ['q', 'mu', 'a'])
-    """
+    """Return a form with lines for the names in cancelled factors besides its own, and these factors."""
     if not tf.is_reduced:
         return form, ()
     has_kernels = tf.ring.used_in(h.polynomial for h in tf.hidden) & set(tf.kernels.generators)

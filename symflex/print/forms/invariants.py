@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 IMAGINARY = "j[]"
 NOT_ENTIRE = "in lowest terms its numerator and denominator could not be shown to be entire in s"
 ORDERS = {"bending": 4, "pair": 4, "wave": 2}
-
 Laurent = dict[tuple[int, int], tuple[int, int]]
 
 

@@ -61,28 +61,7 @@ STEMS = {Step.ADD: "S", Step.MULTIPLY: "P", Step.DIVIDE: "T", Step.POWER: "P"}
 
 
 def nested_form(tf: NestedTransferFunction) -> PrintedForm:
-    """Return a nested transfer function for print.
-
-    >>> from symflex import pipeline
-    >>> from symflex.expressions import format_expression
-    >>> model = pipeline.loads('''
-    ... symflex = 1
-    ... parameters = {m_1 = {}, m_2 = {}, k = {}, b = {}}
-    ... elements.first = {type = "mass", at = "x_1", m = "m_1"}
-    ... elements.second = {type = "mass", at = "x_2", m = "m_2"}
-    ... elements.spring = {type = "spring", between = ["x_1", "x_2"], k = "k"}
-    ... elements.damping = {type = "damper", between = ["x_1", "x_2"], b = "b"}
-    ... inputs.F = {force = "x_1"}
-    ... outputs.X = "x_1"
-    ... ''')
-    >>> form = nested_form(pipeline.derive_nested(model)[0])
-    >>> print(format_expression(form.num), "over", format_expression(form.den))
-    1 over m_1*s^2 + w_1*Z_1/(Z_1 + w_1)
-    >>> for name, expression in form.where:
-    ...     print(name, "=", format_expression(expression))
-    w_1 = b*s + k
-    Z_1 = m_2*s^2
-    """
+    """Return a nested transfer function for print."""
     return _Printer(tf, step_names(tf)).form()
 
 

@@ -25,10 +25,7 @@ from symflex.transfer import TransferFunction
 
 
 def polynomial_form(tf: TransferFunction) -> PrintedForm:
-    """Return numerator and denominator by descending powers of s, coefficients collected and factored.
-
-    Functions of s stand among the coefficients.
-    """
+    """Return numerator and denominator by descending powers of s, coefficients collected and factored."""
     notation = Notation({}, ())
     arranger = plain_printer(tf, tf.ratio.ring).arranger
     if not tf.is_rational:
@@ -44,10 +41,7 @@ def monic_form(tf: TransferFunction) -> PrintedForm:
 
 
 def constant_form(tf: TransferFunction) -> PrintedForm:
-    """Return the polynomial form divided by the coefficient of the denominator's lowest power of s.
-
-    Without poles at 0 the denominator's constant term is 1, and that of the numerator the static gain.
-    """
+    """Return the polynomial form divided by the coefficient of the denominator's lowest power of s."""
     return _normalised(tf, "constant", min)
 
 

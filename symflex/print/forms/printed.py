@@ -91,8 +91,6 @@ class PrintedForm:
     def at(self, name: str) -> str:
         """Return what a signal is called where it is a function of another argument than s.
 
-        Examples
-        --------
         >>> PrintedForm("polynomial", Name("a"), Name("b")).at("X")
         'X'
         >>> PrintedForm("frequency", Name("a"), Name("b"), argument=Name("omega")).at("X")
@@ -145,8 +143,6 @@ def forms_of(tf: TransferFunction) -> tuple[str, ...]:
 def in_roots(expression: Expression, root: RootOfS) -> Expression:
     """Return an expression with a root of s in place of s, powers of which are written as short as can be.
 
-    Examples
-    --------
     >>> from symflex.expressions import number
     >>> from symflex.model.model import RootOfS
     >>> cubed = product_of([power(S, 3), Call("exp", S)])
@@ -169,10 +165,7 @@ def in_roots(expression: Expression, root: RootOfS) -> Expression:
 
 
 def require(tf: TransferFunction, form: str) -> None:
-    """Refuse a form that a transfer function has not.
-
-    Raises UsageError: SF902.
-    """
+    """Refuse a form that a transfer function has not. Raises UsageError: SF902."""
     if form in ("zpk", "frequency") and tf.model.root is not None:
         reason = "it contains roots of s"
     elif form in KERNELS_ONLY and tf.is_rational:

@@ -90,10 +90,7 @@ def shaped(model: Model, form: PrintedForm) -> PrintedForm:
 
 
 def _in_radians(part: Expression, counted: Collection[Expression]) -> Expression:
-    """Return a product with what is in Hz beside its 2 pi: ``2*zeta*(2*pi*f)*s``, ``(2*pi*f)^2``.
-
-    What divides it was a product of its own.
-    """
+    """Return a product with what is in Hz beside its 2 pi: ``2*zeta*(2*pi*f)*s``, ``(2*pi*f)^2``."""
     front, powers = powers_of(part) if isinstance(part, Product) else (Fraction(1), {})
     n = powers.pop(PI, 0)
     found = next((b for b in powers if b in counted and powers[b] == n > 0), None)
@@ -311,10 +308,7 @@ def _difference(total: Sum) -> Expression | None:
 
 
 def _gathered(terms: Sequence[Expression]) -> Sequence[Expression]:
-    """Return terms with powers of s side by side: ``s^2 + 6*s + 5 + K*(s + 1)``.
-
-    What holds s within a sum or a function follows the powers that it stood between.
-    """
+    """Return terms with powers of s side by side: ``s^2 + 6*s + 5 + K*(s + 1)``."""
     powers = [i for i, t in enumerate(terms) if not any(map(_holds_s, nodes(t)))]
     if not any(S in names(terms[i]) for i in powers):
         return terms
@@ -379,10 +373,7 @@ def of_powers(front: Fraction, powers: Mapping[Expression, int]) -> Expression:
 
 
 def _joined(factors: Sequence[Expression]) -> Sequence[Expression]:
-    """Return factors with ``exp(-(T_1 + T_2)*s)`` for several exponentials, and no squares of roots.
-
-    Sums that were written in two orders are one power as soon as they are turned alike.
-    """
+    """Return factors with ``exp(-(T_1 + T_2)*s)`` for several exponentials, and no squares of roots."""
     bases = [_base(f) for f in factors]
     is_squared = any(
         isinstance(f, Power) and isinstance(f.base, Call) and f.base.name == "sqrt" for f in factors

@@ -23,9 +23,7 @@ from symflex.print.writer import ExpressionWriter, Style, Written
 from symflex.transfer import AnyTransferFunction
 
 _OVER: Final = "_over_"
-
 RESERVED: Final = {LAPLACE: "s", "pi": r"\pi"}
-
 NOTEBOOK_MM: Final = 190.0  # width of an equation in a notebook, in type of ten points
 LONGEST_IN_NOTEBOOK: Final = 20_000
 
@@ -101,14 +99,9 @@ def formula_latex(
     *,
     width_mm: float,
 ) -> str:
-    r"""Return equations of any expressions as a display without numbers, broken where they must be.
+    """Return equations of any expressions as a display without numbers, broken where they must be.
 
     Left sides are LaTeX already; the pairs of ``where`` are lines below the equations.
-
-    >>> print(formula_latex([("y", Name("omega_p1"))], (), {}, width_mm=80))
-    \begin{align*}
-      y &= \omega_{p1}
-    \end{align*}
     """
     writer = Writer(labels)
     width = max(width_mm, NARROWEST_MM) / EM_MM

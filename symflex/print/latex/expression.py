@@ -46,17 +46,9 @@ from symflex.print.writer import (
 
 
 def latex_expression(expression: Expression, labels: Mapping[str, str], style: Style = Style.DISPLAY) -> str:
-    r"""Return an expression as LaTeX for math mode.
+    """Return an expression as LaTeX for math mode; names without a label get one made of their letters.
 
-    Names without a declared label get :func:`~symflex.print.label.label_of`. Raises TypeError for an
-    equation or a quantity of an element, which no transfer function contains.
-
-    >>> from symflex.expressions import Name, number, power, product_of, quotient, sum_of
-    >>> s, zeta, omega = Name("s"), Name("zeta_p1"), Name("omega_p1")
-    >>> print(latex_expression(sum_of([power(s, 2), product_of([number(2), zeta, omega, s])]), {}))
-    s^{2} + 2 \zeta_{p1} \omega_{p1} s
-    >>> print(latex_expression(quotient(number(1), product_of([Name("r"), sum_of([s, zeta])])), {"r": "r_t"}))
-    \frac{1}{r_t (s + \zeta_{p1})}
+    Raises TypeError for an equation or a quantity of an element, which no transfer function contains.
     """
     return Writer(labels).piece(expression, style).markup
 
@@ -122,10 +114,7 @@ _SQUARE_ROOT: Final = 1.26  # the exponent 1/2
 
 
 class Glue(NamedTuple):
-    """What joins an item to the one before it: on the same line, or at the start of the next.
-
-    ``depth`` is how far that next line is indented.
-    """
+    """What joins an item to the one before: on its line, or at the start of the next, so far indented."""
 
     latex: str = ""
     width: float = 0.0
@@ -151,17 +140,11 @@ _DOT: Final = r"{}\cdot "
 
 
 def break_lines(expression: Expression, writer: Writer, first: float, others: float) -> list[str]:
-    r"""Return an expression as lines for display.
+    """Return an expression as lines for display.
 
     ``first`` and ``others`` are the room in the first line and in those that continue it [em]; none of these
     is used beyond the first's. Each line begins with its indentation, and all but the first with their
     operator.
-
-    >>> from symflex.expressions import Name
-    >>> from symflex.print.latex.expression import Writer
-    >>> letters = Sum(tuple(map(Name, "abcdef")))
-    >>> break_lines(letters, Writer({}), 6.0, 6.0)
-    ['a + b + c + d', '{}+ e + f']
     """
     # What has no room in the first line may then stand in no other, and so need not leave it empty.
     filler = _Filler(writer, first, min(first, others))

@@ -13,7 +13,6 @@ COLUMNS_MM: Final = {"ieee": 88.5, "a4": 170.0}
 NARROWEST_MM: Final = 80.0
 """Narrowest column for formulas of ten points; in a narrower one they need more than one column."""
 WIDEST_MM: Final = 1000.0
-
 _MILLIMETRES: Final = re.compile(r"([0-9]{1,6}(?:\.[0-9]{1,6})?) ?(?:mm)?")
 
 
@@ -42,10 +41,7 @@ def width_of(said: float | str | None) -> float | None:
 
 
 def checked_width(width_mm: float) -> float:
-    """Return the width of a column [mm] if it is one.
-
-    Raises UsageError: SF902 when it is not between 80 and 1000 mm.
-    """
+    """Return the width of a column [mm]; UsageError: SF902 when it is not between 80 and 1000 mm."""
     if not NARROWEST_MM <= width_mm <= WIDEST_MM:
         message = f"a column is from {NARROWEST_MM:g} to {WIDEST_MM:g} mm wide, found {width_mm:g} mm"
         raise UsageError(Diagnostic("SF902", message))
@@ -70,10 +66,7 @@ _PREAMBLE: Final = r"""\documentclass[10pt,a4paper]{article}
 
 
 def preamble(width_mm: float = COLUMNS_MM["a4"], packages: Sequence[str] = ()) -> str:
-    """Return everything before the document begins.
-
-    The text is ``width_mm`` wide, on a page of A4 where it has margins then.
-    """
+    """Return everything before the document begins, for a text of a width on A4 where it has margins then."""
     needed = width_mm + 2 * _MARGIN_MM
     paper = "" if needed <= _A4_MM else f"paperwidth={needed:g}mm,paperheight=297mm,"
     # Justified lines of a narrow column would need hyphenation of every word in them.

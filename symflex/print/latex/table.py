@@ -106,10 +106,7 @@ def root_table(
 def mode_table(
     maps: Sequence[PoleZeroMap], *, digits: int = ROOT_DIGITS, width_mm: float = COLUMNS_MM["a4"]
 ) -> str:
-    r"""Return the table of the modes that are poles of any of several functions: frequencies and damping.
-
-    Rigid-body motions come first; a conjugate pair, or a real pole, is one mode. See :func:`root_table`.
-    """
+    """Return the table of the modes that are poles of any of several functions; see :func:`root_table`."""
     from symflex.roots.root import overlap  # imports numpy
 
     modes: list[PrintedRoot] = []
@@ -267,10 +264,7 @@ def fitting(columns: Sequence[TabularColumn], width: float) -> Setting | None:
 
 
 def tabular(columns: Sequence[TabularColumn], setting: Setting, heights: Sequence[int] | None = None) -> str:
-    r"""Return a table, centred, as a paragraph of its own.
-
-    ``heights`` are the lines that each row takes, one by default.
-    """
+    """Return a table, centred, as a paragraph; ``heights`` are the lines of each row, one by default."""
     formats = "".join(column.format for column in columns)
     lines = zip(*(column.cells for column in columns), strict=True)
     rows = [f"    {' & '.join(cells)} \\\\" for cells in lines]

@@ -12,7 +12,6 @@ from symflex.report.document import Aside, Badge, Cell, Run, Section, Table, Ton
 from symflex.report.facts import ModelFacts
 
 Models = Mapping[str, ModelFacts]  # facts by the name of the model's file, without suffix
-
 Predicate = Callable[..., "Finding"]
 """What may be checked, with facts, the names of what is checked, and values by keyword."""
 WORST: Final[tuple[Verdict, ...]] = ("not examined", "does not hold", "holds with a condition", "holds")

@@ -170,10 +170,7 @@ def same_poles(models: Models, of: tuple[str, ...]) -> Finding:
 
 
 def mirrored_real_zeros(models: Models, of: tuple[str, ...], *, count: int = 0) -> Finding:
-    """Tell whether all zeros are real, each with its mirror image in the imaginary axis.
-
-    A ``count`` of 0 stands for any number.
-    """
+    """Tell whether all zeros are real, each with its mirror image; a ``count`` of 0 is any number."""
     lines: list[Run] = []
     facts = functions(models, of)
     for stem, function in facts:
@@ -198,10 +195,7 @@ def minimum_phase(models: Models, of: tuple[str, ...]) -> Finding:
 
 
 def nonminimum_phase(models: Models, of: tuple[str, ...], *, for_these_values: bool = False) -> Finding:
-    """Tell whether zeros lie in the right half-plane.
-
-    With ``for_these_values``, what it is for other values of the parameters is left out.
-    """
+    """Tell whether zeros lie in the right half-plane; ``for_these_values`` says nothing of others."""
     lines: list[Run] = []
     facts = functions(models, of)
     for stem, function in facts:
@@ -313,10 +307,7 @@ PREDICATES: Final[Mapping[str, Predicate]] = {p.__name__.replace("_", "-"): p fo
 
 
 def functions(models: Models, of: tuple[str, ...]) -> list[tuple[str, TransferFacts]]:
-    """Return the transfer functions named, with their models' names.
-
-    Raises KeyError for one that the models do not have.
-    """
+    """Return the transfer functions named, with their models' names; KeyError for what is missing."""
     facts: list[tuple[str, TransferFacts]] = []
     for name in of:
         stem, _, tf = name.partition(": ")

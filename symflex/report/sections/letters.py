@@ -35,7 +35,6 @@ from symflex.transfer import AnyTransferFunction
 NOTHING: Final = Mathematics("<mn>0</mn>", "0")
 SCALE: Final = {"scale": "G_{0}"}
 LIMITS: Final = {"G_infinity": r"G_{\infty}"}
-
 LONGEST: Final = 100  # characters of a condition that a person reads; symflex chose the number, as the next
 MOST_ROWS: Final = 12  # groups, with function and scale, that a person reads
 

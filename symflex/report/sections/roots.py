@@ -123,11 +123,7 @@ def _stability(verdict: StabilityVerdict, more: str = "") -> Block:
 
 
 def stability_mark(word: str) -> Badge:
-    """Return the badge of a verdict: green for what is proved to be stable alone.
-
-    >>> [stability_mark(word).tone for word in ("stable", "marginal", "unstable", "stability not known")]
-    ['good', 'fair', 'bad', 'fair']
-    """
+    """Return the badge of a verdict: green for what is proved to be stable alone."""
     tones: dict[str, Tone] = {"stable": "good", "unstable": "bad"}
     return Badge(word, tones.get(word, "fair"))
 
@@ -219,10 +215,5 @@ def _together(colocation: DynamicColocation) -> Block:
 
 
 def decimal(value: arb) -> str:
-    """Return an enclosure with at most ten digits.
-
-    >>> from flint import arb
-    >>> decimal(arb(1) / 3)
-    '0.3333333333'
-    """
+    """Return an enclosure with at most ten digits."""
     return figure(value, DIGITS, trimmed=True)
