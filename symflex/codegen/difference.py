@@ -179,11 +179,7 @@ def difference_equation(sampled: SampledTransferFunction, *, is_direct: bool = F
 
 
 def _paired(poles: Sequence[acb], zeros: Sequence[acb]) -> list[tuple[list[acb], list[acb]]]:
-    """Return poles, those next to the unit circle first, each with the zeros next to them.
-
-    Real poles stand alone, as do real zeros, which keeps how far they are off z = 1; only a pair of complex
-    zeros without complex poles takes two.
-    """
+    """Return poles, those next to the unit circle first, each with the zeros next to them."""
     wide, single = _conjugates(poles)
     pairs, real_zeros = _conjugates(zeros)
     while len(wide) < len(pairs):

@@ -77,10 +77,7 @@ class Exporter(Protocol):
     def export(
         self, model: Model, tfs: Sequence[AnyTransferFunction], stem: str = "", *, is_alone: bool = True
     ) -> Export:
-        """Return the file of a model's transfer functions.
-
-        ``stem`` is its name without suffix, empty for none; where it ``is_alone`` it has no companions.
-        """
+        """Return the file of transfer functions; ``stem`` is its name without suffix, empty for none."""
         ...
 
 

@@ -163,9 +163,6 @@ def in_lines(text: str, width: int) -> list[str]:
     """Return code as lines that end after an operator or a comma.
 
     Only blanks are broken at, so a name longer than a line stays whole.
-
-    >>> in_lines("a * (b + c) / d", 10)
-    ['a * (b +', 'c) / d']
     """
     glued = text
     for operator in ("+", "-", "*", "/", ".*", "./", "<"):

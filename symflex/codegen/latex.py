@@ -135,10 +135,7 @@ class LatexExporter:
 
 
 def _bound(tf: AnyTransferFunction) -> AnyBoundFunction | None:
-    """Return a function with numbers, ``None`` if it is symbolic or the nested form of a lumped model.
-
-    Roots of the latter take too long for a print.
-    """
+    """Return a function with numbers, ``None`` if it is symbolic or nested, whose roots take too long."""
     if tf.is_rational and not tf.is_reduced:
         return None
     try:

@@ -57,10 +57,7 @@ class ModelicaExporter:
     def export(
         self, model: Model, tfs: Sequence[AnyTransferFunction], stem: str = "", *, is_alone: bool = True
     ) -> Export:
-        """Return the model.
-
-        Raises ModelError: SF235 for beams, rods and delays between nodes, SF236 for more zeros than poles.
-        """
+        """Return the model; SF235 for members and delays between nodes, SF236 for more zeros than poles."""
         check_causal(model, "a Modelica model")
         cut, late = without_delays(model)
         sources = list(dict.fromkeys([*(tf.input.name for tf in tfs), *late]))

@@ -191,11 +191,7 @@ def statement_lines(text: str, width: int, indent: str, more: str = "    ") -> l
 
 
 def wrapped(text: str, width: int, indent: str = "", more: str | None = None) -> list[str]:
-    """Return a text without line ends as lines, long products broken after their operators.
-
-    They have at most ``width`` columns, with what the first line and the others begin with: ``indent``, and
-    ``more`` where that differs.
-    """
+    """Return a text as lines of at most ``width`` columns, long products broken after their operators."""
     more = indent if more is None else more
     room = width - max(len(indent), len(more))
     words = " ".join(_broken(word, room) if len(word) > room else word for word in text.split(" "))

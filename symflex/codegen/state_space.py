@@ -385,10 +385,7 @@ def _without_delays(
 
 
 def sampled_module(system: StateSpace, sampling: Sampling, delay: Fraction) -> str:
-    """Return a module with the matrices of one sampling time, the inputs held from sample to sample.
-
-    Raises ModelError: SF229 for parameters without value, SF233 where an entry does not fit in a double.
-    """
+    """Return a module with the matrices of one sampling time, the inputs held from sample to sample."""
     valued = tuple(p for p in system.model.parameters if p.value is not None)
     stepped = sampled_state_space(system, dict(read_values(valued, {})), sampling, delay)
     lines = ["One step of a linear system from a sample to the next, with its inputs held in between.", ""]

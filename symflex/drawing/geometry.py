@@ -47,11 +47,7 @@ class Extent:
         return Extent(self.x0 - by, self.y0 - by, self.x1 + by, self.y1 + by)
 
     def overlaps(self, other: Extent) -> bool:
-        """Tell whether two rectangles share more than an edge.
-
-        >>> [Extent(0, 0, 2, 2).overlaps(Extent(x, 0, 3, 2)) for x in (1, 2)]
-        [True, False]
-        """
+        """Tell whether two rectangles share more than an edge."""
         return self.x0 < other.x1 and other.x0 < self.x1 and self.y0 < other.y1 and other.y0 < self.y1
 
 
@@ -68,11 +64,7 @@ def union(boxes: Iterable[Extent]) -> Extent:
 
 
 def free_level(room: Extent, limit: float, occupied: Sequence[Extent], *, is_up: bool) -> float:
-    """Return how far a rectangle is moved up (or down) from a limit until nothing is in its way.
-
-    >>> round(free_level(Extent(0, 0, 4, 2), 0.0, [Extent(3, 1, 5, 6)], is_up=True), 1)
-    6.1
-    """
+    """Return how far a rectangle is moved up (or down) from a limit until nothing is in its way."""
     y = limit - (room.y0 if is_up else room.y1)
     beside = [b for b in occupied if b.x0 < room.x1 and room.x0 < b.x1]
     while hit := [b for b in beside if b.overlaps(room.moved(0, y))]:
@@ -150,12 +142,7 @@ class Placed:
 
     @property
     def extents(self) -> tuple[Extent, ...]:
-        """Rectangles that cover it, small ones along what is slanted.
-
-        >>> slanted = Placed("element", "a", (Stroke(((0, 0), (30, 40))),))
-        >>> any(e.overlaps(Extent(20, 0, 30, 10)) for e in slanted.extents)
-        False
-        """
+        """Rectangles that cover it, small ones along what is slanted."""
         boxes = [t.box for t in self.texts]
         for stroke in self.strokes:
             box, is_simple = around(stroke.points), len(stroke.points) <= MOST_CORNERS
@@ -168,11 +155,7 @@ class Placed:
         return tuple(boxes)
 
     def rotated(self, dx: float, dy: float) -> Placed:
-        """Return a part turned about the origin, so that x runs in a direction; its texts stay upright.
-
-        >>> Placed("wire", "", (Stroke(((0, 0), (2, 1))),)).rotated(0, -1).strokes[0].points
-        ((0, 0), (1, -2))
-        """
+        """Return a part turned about the origin, so that x runs in a direction; its texts stay upright."""
 
         def turned(x: float, y: float) -> Point:
             return dx * x - dy * y, dy * x + dx * y

@@ -90,11 +90,7 @@ def filled(parts: Sequence[str], width: float, size: float = SMALL) -> list[Lett
 
 
 def name_latex(name: str) -> str:
-    r"""Return a name in mathematics, cut where it is long.
-
-    >>> print(name_latex("x_tip"), name_latex("a" * 64))
-    x_{\mathrm{tip}} \mathrm{aaaaaaaaaaaaa\ldots}
-    """
+    """Return a name in mathematics, cut where it is long."""
     if len(name) <= LONGEST_NAME:
         return label_of_name(name)
     return rf"\mathrm{{{name[: LONGEST_NAME - 1].replace('_', ' ').strip().replace(' ', '~')}\ldots}}"

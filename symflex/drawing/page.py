@@ -26,11 +26,7 @@ BETWEEN: Final = 11.0
 
 
 def render_drawing(drawing: Drawing, format: str, *, font: str = DEFAULT_FONT) -> bytes:
-    """Return a drawing as the content of a file; equal drawings give equal bytes.
-
-    In an SVG texts are texts, and what stands for a part of the model bears its name as a title. ``format``
-    and ``font`` are as of :func:`symflex.figures.render`.
-    """
+    """Return a drawing as the content of a file; in an SVG parts bear the names of what they stand for."""
     with paper_style(font):
         figure = figure_of(drawing)
     if format != "svg":

@@ -319,11 +319,7 @@ def sections(
     known: Mapping[str, float],
     root: int | None,
 ) -> Depths:
-    """Return the depths of a member by its section.
-
-    Of a bar or shaft with round or square sections the ``root`` of an area or a second moment. Of a beam in
-    bending (None) the radius of gyration, sqrt(I/A), and the width where that alone varies.
-    """
+    """Return the depths of a member by its section: a ``root``, of a beam (None) the radius of gyration."""
     if root:
         return depths(heavy, ends, known, root)
     return depths(Quotient(stiff, heavy), ends, known, 2) or depths(heavy, ends, known, 1)
@@ -489,12 +485,7 @@ UNKNOWN: Final = 0.5
 def depths(
     coefficient: Expression, ends: tuple[float, float], known: Mapping[str, float], root: int
 ) -> Depths:
-    """Return a root at even stations, the greatest as 1; nothing of a coefficient that does not vary.
-
-    >>> found = depths(Sum((Number(Fraction(1)), Name("x"))), (0.0, 1.0), {}, 1)
-    >>> [round(found[i], 2) for i in (0, 12, 24)]
-    [0.5, 0.75, 1.0]
-    """
+    """Return a root at even stations, the greatest as 1; nothing of a coefficient that does not vary."""
     a, b = ends
     guessed = {n.name: UNKNOWN for n in names(coefficient) if isinstance(n, Name)} | dict(known)
     places = (a + (b - a) * i / STATIONS for i in range(STATIONS + 1))

@@ -166,11 +166,7 @@ DEEPEST: Final = 4.2  # the same of one that tapers, where it is deepest
 
 
 def half_depth(depths: Sequence[float], share: float) -> float:
-    """Return half the width of a member at a share of its length.
-
-    >>> half_depth((), 0.3), half_depth((1.0, 0.5), 0.0)
-    (2.2, 4.2)
-    """
+    """Return half the width of a member at a share of its length."""
     if not depths:
         return HALF
     return DEEPEST * depths[round(share * (len(depths) - 1))]

@@ -171,9 +171,6 @@ def drawable(values: npt.NDArray[np.complex128], reach: float) -> npt.NDArray[np
     """Return values with those far outside brought nearer, in their own directions.
 
     ``reach`` is half the width of what is shown; infinite values become gaps.
-
-    >>> drawable(np.array([1 + 1j, 3e9j, -np.inf]), 2.0).tolist()
-    [(1+1j), 100j, (nan+nanj)]
     """
     finite = np.where(np.isfinite(values), values, np.nan + 1j * np.nan)
     size = np.abs(finite)

@@ -66,12 +66,7 @@ UNDAMPED_MARGIN_DB: Final = 15.0  # room beyond the damped values where peaks ar
 
 
 def draw_bode(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
-    """Draw magnitude and phase of transfer functions in one figure; see :func:`symflex.figures.draw`.
-
-    Magnitudes of each unit have a panel, except on the user's axes.
-    Peaks and troughs without damping have no end; they run to the frame. Where poles lie in the right
-    half-plane, or may lie there, the legend notes it.
-    """
+    """Draw magnitude, a panel for each unit, and phase; infinite peaks and troughs run to the frame."""
     # The default roots of distributed systems only give a band and the poles in the right half-plane.
     given = canvas.band_of(bounds[0].source.model)
     judged = [None if given else roots_if_found(bound) for bound in bounds]

@@ -17,14 +17,10 @@ Raster = tuple[bytes, dict[str, int]]
 
 
 class ShownFigure(Figure):
-    r"""A figure that belongs to no window, and that a notebook shows where it is a cell's value.
+    """A figure that belongs to no window, and that a notebook shows where it is a cell's value.
 
     One of mode shapes also knows its ``moving`` artists: what places each, given the factor that the motion
     has turned by, or None for what is not shown in motion.
-
-    >>> data, size = ShownFigure(figsize=(3.5, 2.0))._repr_png_()
-    >>> data[:4], size
-    (b'\x89PNG', {'width': 420, 'height': 240})
     """
 
     moving: tuple[tuple[Artist, Callable[[complex], object] | None], ...] = ()

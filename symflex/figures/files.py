@@ -134,11 +134,7 @@ def _quietly() -> Iterator[None]:
 
 
 def save(figure: Figure, path: Path, format: str | None = None, *, font: str = DEFAULT_FONT) -> None:
-    """Write a figure to a file, as a whole or not at all.
-
-    The format is by default what the file's name ends in. Raises UsageError: SF208 an unknown format; SF903
-    the file cannot be written.
-    """
+    """Write a figure to a file, as a whole or not at all; by default in the format its name ends in."""
     chosen = path.suffix.removeprefix(".").lower() if format is None else format
     write_atomically(path, render(figure, chosen, font=font))
 

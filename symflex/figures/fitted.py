@@ -50,11 +50,7 @@ DATA_COLOUR: Final = "#555555"
 def draw_measured(
     measured: MeasuredResponse, model: Complex | None = None, unit: str = "", ax: AxesGiven | None = None
 ) -> Figure:
-    """Draw a measured response, and over it a model if there is one; on axes ``ax`` of the user's own.
-
-    ``model`` is the model on the measured lines; ``unit`` is that of the values, where the data do not say.
-    Synthetic data are called so in the title.
-    """
+    """Draw a measured response, and over it a model on its lines if there is one, or on the user's axes."""
     own = axes_of(ax)
     with nullcontext() if own else paper_style():
         top, bottom = Canvas(axes=own).own_axes(2) if own else magnitude_over_phase(COLUMN_INCHES, 3.9, 1.35)
@@ -73,9 +69,7 @@ def draw_measured(
 def draw_fit(fit: ResonanceFit, response: int | None = None, ax: AxesGiven | None = None) -> Figure:
     """Draw a fit on one page: data, start and fit, what the fit leaves, coherence, and the modes by number.
 
-    It shows one response, or all. Lines that were left out are crossed. Where the phase is not that of a
-    minimum-phase function the ground is coloured. Synthetic data are called so in the title. On two axes of
-    the user's own, if they are given, magnitude and phase of one response are drawn.
+    Lines left out are crossed, and the ground is coloured where the phase is not a minimum one.
     """
     own = axes_of(ax)
     if own:

@@ -95,15 +95,10 @@ POINTED: Final = 0.06  # length of a curve over the height shown from which on i
 
 
 def draw_locus(loop: AnyLoop, canvas: Canvas) -> Figure:
-    """Draw a root locus, of what lies up to the end of a band, or within limits.
+    """Draw a root locus: crosses at the first gain, squares at the last, stars at the nominal one.
 
-    Crosses are the poles at the first gain, squares those at the last, stars those at the nominal
-    gain, circles the zeros; all of them are certified. The lines between are traced numerically: solid from
-    poles at the first gain, dashed from where none is marked, such as infinity. Arrows
-    point to growing gains, and where poles cross the imaginary axis the certified gain and frequency
-    are noted. The curves that belong together are shown; the legend says how many of each lie
-    outside, and arrows at the border where. Grey circles surround points at which poles accumulate. The
-    right half-plane is tinted. A verdict asked for says at each gain whether the loop is stable.
+    Marks are certified; lines between are traced numerically, dashed from where no pole is marked, and arrows
+    point to growing gains. Crossings of the imaginary axis are noted, as is what lies outside.
     """
     locus = trace_locus(loop, canvas.gains, canvas.modes, band_hz=canvas.band_hz)
     require_arrival(locus)
@@ -207,11 +202,7 @@ def _view(locus: RootLocus, marks: Sequence[RootMark], canvas: Canvas, crossing:
 
 
 def _chosen(locus: RootLocus, marks: Sequence[RootMark], crossing: float) -> set[complex]:
-    """Return the roots near the curves to be shown: from the innermost on, past the last crossing [rad/s].
-
-    Without a crossing they are at least half of all. They end at a gap, or at poles further out that hardly
-    move.
-    """
+    """Return the roots near the curves to be shown, from the innermost past the last crossing [rad/s]."""
     traced = [(max(map(abs, b)), sum(abs(t - s) for s, t in pairwise(b))) for b in locus.branches]
     traced += [(abs(branch[-1]), abs(branch[-1])) for branch in locus.entering]
     traced = sorted(one for one in traced if one[0])
@@ -256,10 +247,8 @@ WITHIN: Final = 0.9  # an arrow stands in so much of what is shown
 def draw_nyquist(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
     """Draw the values of transfer functions for positive frequencies and, dashed, for negative ones.
 
-    Where no band is asked for, the curve of a rational function begins at 0, unless there is a pole, and goes
-    on until it is next to where it ends, mostly the origin. Arrows point to growing frequency. The legend
-    says how many poles lie in the right half-plane where there are any, P of them: a closed loop is stable if
-    the curve winds P times counterclockwise about -1.
+    Without a band, the curve of a rational function ends beside its limit. The legend counts P unstable
+    poles.
     """
     return draw_curves(bounds, canvas, _draw_about_one)
 

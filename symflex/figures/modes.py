@@ -67,12 +67,9 @@ Curve = tuple["npt.NDArray[np.float64]", "npt.NDArray[np.complex128]"]
 
 
 def draw_modes(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
-    """Draw the shapes of the lowest modes of the first function's model, hidden ones among them.
+    """Draw the lowest modes of the first function's model, and all of poles in the right half-plane.
 
-    As many as ``[analysis]`` says, else five, or the first 40 of a band; and all of poles in the right
-    half-plane. Rigid-body motions at 0 are left out. The part in phase with the largest displacement is drawn
-    in full, what moves in quadrature dashed. See :func:`symflex.figures.draw`. Raises ModelError: SF402 when
-    there is no mode other than at 0; UsageError: SF902 when the panels do not fit into the width.
+    The part in phase with the largest displacement is drawn in full, what moves in quadrature dashed.
     """
     model, band_hz = bounds[0].source.model, canvas.band_hz
     band = None if band_hz is None else Band(Fraction(band_hz[0]), Fraction(band_hz[1]))
@@ -198,11 +195,7 @@ def _curves(panel: Run, shape: EnclosedModeShape) -> list[Curve]:
 def _smooth(
     part: DistributedShape, states: Sequence[int]
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.complex128]]:
-    """Return shares of a part's length, and states there, so close that no corner shows.
-
-    Along a part that tapers every state takes an expansion: there a cubic spline through sixteen points a
-    half wave, right to 10^-5 of its height, gives those between.
-    """
+    """Return shares of a part's length and states there, so close that no corner shows."""
     few = part.intervals()
     many = few * max(1, min(FINER, MOST_POINTS // few))
     points = list(part.sampled(many if part.varying is None else few))

@@ -94,12 +94,7 @@ def _phases_and_levels(values: npt.NDArray[np.complex128]) -> npt.NDArray[np.com
 
 
 def _contour(level: float) -> npt.NDArray[np.complex128]:
-    """Return where ``L/(1 + L)`` has a magnitude, as phases from -360 degrees and levels.
-
-    >>> contour = _contour(6.0206)  # 2: from L = -2 to L = -2/3
-    >>> round(float(contour.imag.max()), 1), round(float(contour.imag.min()), 1)
-    (6.0, -3.5)
-    """
+    """Return where ``L/(1 + L)`` has a magnitude, as phases from -360 degrees and levels."""
     closed = 10 ** (level / 20) * np.exp(1j * np.linspace(1e-3, 2 * np.pi - 1e-3, 721))
     gain = closed / (1 - closed)
     phases = np.degrees(np.angle(gain)) % 360 - 360

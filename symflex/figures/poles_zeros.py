@@ -66,14 +66,10 @@ COLOUR_OF: Final = {kind: colour for kind, (_, colour, _) in LOOKS.items()}
 
 
 def draw_poles_zeros(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
-    """Draw poles (crosses) and zeros (circles); see :func:`symflex.figures.draw`.
+    """Draw poles (crosses) and zeros (circles), all panels with the same part of the s plane.
 
-    All panels show the same part of the s plane, an inset those roots that lie close to the origin of a wide
-    one. A root outside is named at the border where the ray from the origin to it leaves the panel. A
-    multiple root carries its multiplicity. Of distributed systems the default modes are shown, as far up as
-    the highest pole, or those up to the end of a band, and all poles in the right half-plane. Within limits
-    asked for, scales may differ, and the title counts what is outside. A verdict holds for all poles, drawn
-    or not, and for the values themselves, not over a spread.
+    A root outside is named where the ray to it leaves; an inset shows what is close to the origin of a wide
+    one.
     """
     band_hz, frame = canvas.band_hz, canvas.frame
     region = None if band_hz is None else Band(Fraction(0), Fraction(band_hz[1]))

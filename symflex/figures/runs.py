@@ -63,12 +63,7 @@ Panel = Run | Plan | Stems
 
 
 def panels_of(model: Model, shapes: Sequence[EnclosedModeShape]) -> tuple[Panel, ...]:
-    """Return what a figure of the modes shows, from left to right.
-
-    Members of frames are drawn in the plane, other distributed parts along an axis. Nodes at their ends are
-    shown there; what rests in all modes, and what turns where a beam shows the slope, is left out. Voltages
-    and signals are shown when nothing else moves.
-    """
+    """Return what a figure of the modes shows; voltages and signals when nothing else moves."""
     if not shapes:
         return ()
     parts = {part.name: part for part in shapes[0].distributed}

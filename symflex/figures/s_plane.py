@@ -56,11 +56,7 @@ class RootMark:
 
     @property
     def value(self) -> str:
-        r"""The root in four digits, with its conjugate, in matplotlib's mathematics.
-
-        >>> RootMark("zero", complex(-1989.6, 0)).value, RootMark("pole", complex(0, 1516.54), 2).value
-        ('$-1990$', '$\\pm 1517\\,\\mathrm{j}$ (2)')
-        """
+        """The root in four digits, with its conjugate, in matplotlib's mathematics."""
         # A part that is nothing but rounding is not printed.
         is_imaginary = self.s.imag and abs(self.s.real) < ROUNDING * abs(self.s)
         re = "" if is_imaginary else _number(self.s.real)
@@ -309,11 +305,9 @@ def write_notes(
     taken: Sequence[Box] = (),
     said: Mapping[complex, str] | None = None,
 ) -> None:
-    """Draw arrows to roots outside the view, name those of the upper half-plane, number multiple roots.
+    """Draw arrows to roots of ``marks`` outside the view, and number those of ``numbered`` in it.
 
-    Those of ``marks`` outside the view are named; those of ``numbered`` in it bear their multiplicity. No
-    text covers another one, or what is ``taken``, as long as there is room. What is
-    ``said`` of points stands beside them.
+    No text covers another one, or what is ``taken``, as long as there is room.
     """
     groups = leaving((mark for mark in marks if mark.kind in GLYPHS), panel.view)
     shafts = [_draw_arrow(axes, group[0].s, panel) for group in groups]

@@ -28,11 +28,7 @@ LOWEST_DB: Final = 63.0  # magnitudes are shown from so far below 0 dB
 
 
 def draw_sensitivity(loop: AnyLoop, canvas: Canvas) -> Figure:
-    """Draw the sensitivity and the complementary sensitivity of a loop at its nominal gain.
-
-    If the loop is stable, the peaks are marked, and the legend says how large they are; of a network they are
-    not known. If it is not proved stable, the heading says so.
-    """
+    """Draw the sensitivities of a loop at its nominal gain, with their peaks where it is proved stable."""
     gain, width = nominal_gain(loop), canvas.width or COLUMN_INCHES
     verdict = verdict_of_closed(loop, gain)
     is_stable = verdict.word == "stable"

@@ -25,12 +25,9 @@ MOST_PIXELS: Final = 1024
 def draw_stability(
     stability: StabilityChart | StabilityMap, canvas: Canvas, *, with_box: bool = False
 ) -> Figure:
-    """Draw for which values of two parameters a model is stable, or of one.
+    """Draw for which values of two parameters a model is stable, or the unstable poles over one.
 
-    The stable region is shaded, what is undecided is grey, and each region says how many poles are
-    unstable. Boundaries are curves through certified points; a star marks the declared values, and dashes, if
-    they are asked for, the largest box about them in which all is as there. Of one parameter the number of
-    unstable poles is drawn, with the frequencies [Hz] at which poles pass the axis.
+    What is undecided is grey, a star marks the declared values, dashes the largest box about them.
     """
     axes = canvas.one_panel(HEIGHT_INCHES if isinstance(stability, StabilityChart) else STRIP_INCHES)
     if isinstance(stability, StabilityChart):

@@ -133,11 +133,7 @@ def write_titles(figure: Figure, titles: Sequence[Sequence[str]], above: float, 
 
 
 def title_lines(title: str | None, width: float) -> list[str]:
-    """Return a title broken to a width [inches], but not at equals signs, without what does not print.
-
-    >>> title_lines("Two masses, one pole at s = 0", 1.5)
-    ['Two masses, one pole at', 's = 0']
-    """
+    """Return a title broken to a width [inches], but not at equals signs, without what does not print."""
     words = " ".join((title or "").split())
     printed = "".join(c for c in words if c.isprintable()).replace(" = ", "\xa0=\xa0")
     # So many letters in eight points are never too wide.
@@ -223,11 +219,7 @@ TIGHT_DOT: Final = r"\!\cdot\!"
 
 
 def power_of_ten(decimal: str, times: str) -> str:
-    r"""Return a decimal in mathematics, without a factor 1 before a power of ten.
-
-    >>> print(power_of_ten("2.1e-11", r"\cdot "), power_of_ten("-1e+06", r"\cdot "), power_of_ten("95", ""))
-    2.1\cdot 10^{-11} -10^{6} 95
-    """
+    """Return a decimal in mathematics, without a factor 1 before a power of ten."""
     mantissa, _, exponent = decimal.partition("e")
     power = f"10^{{{int(exponent or 0)}}}"
     if mantissa in ("1", "-1") and exponent:
@@ -236,22 +228,14 @@ def power_of_ten(decimal: str, times: str) -> str:
 
 
 def label_of_frequency(value: float) -> str:
-    """Return a number on a logarithmic axis, written out where that is short.
-
-    >>> [label_of_frequency(f) for f in (0.1, 20, 1e6)]
-    ['0.1', '20', '$10^{6}$']
-    """
+    """Return a number on a logarithmic axis, written out where that is short."""
     if PLAIN_LOW <= value < PLAIN_HIGH:
         return f"{value:g}"
     return f"${power_of_ten(f'{value:.0e}', TIGHT_DOT)}$"
 
 
 def number_label(value: float) -> str:
-    r"""Return a number in four digits in matplotlib's mathematics.
-
-    >>> number_label(25.0), number_label(1e6), number_label(2.5e-7)
-    ('25', '10^{6}', '2.5\\times 10^{-7}')
-    """
+    """Return a number in four digits in matplotlib's mathematics."""
     return power_of_ten(f"{value:.4g}", r"\times ")
 
 

@@ -65,11 +65,7 @@ TINY = 2.0**-64  # radius of a value of the characteristic function on its bound
 
 
 def boundary(model: Model, over: Sequence[str]) -> Conditions:
-    """Return the boundary of stability over two parameters in letters.
-
-    Raises UsageError: SF902 for unknown names, or other than two; ModelError: SF801 if real and imaginary
-    part cannot be solved for them.
-    """
+    """Return the boundary of stability over two parameters in letters; SF801 if there is no formula."""
     check_causal(model, "a boundary in letters")
     parameters = [pick_gain(model.parameters, name) for name in dict.fromkeys(over)]
     if len(parameters) != 2 or len(over) != 2:  # noqa: PLR2004
@@ -174,10 +170,7 @@ def _rate(ring: Ring, kernel: Kernel, delay: str) -> tuple[Factored, Factored] |
 def _arc(
     tf: TransferFunction, page: FrequencyPage, gain: str, cosine: Factored, sine: Factored
 ) -> tuple[Factored, int, int]:
-    """Return x, q and m of an angle ``q*pi/2 + m*atan(x)``; m is 2 unless a sign is known.
-
-    Without a sine it is ``(1 - x)*pi/2``, x the cosine, 1 or -1: then m is 0.
-    """
+    """Return x, q and m of an angle ``q*pi/2 + m*atan(x)``, or with m = 0 of ``(1 - x)*pi/2``."""
     own, more = Signs.of(tf), {LAPLACE, gain}
     signs = Signs(page.ring, own.positive | more, own.nonnegative | more)
     c, s = (

@@ -55,10 +55,7 @@ NO_EQUATION: Final = (
 def roots_in_letters(
     tf: AnyTransferFunction, bound: AnyBoundFunction, located: PoleZeroMap
 ) -> tuple[FactorInLetters, ...]:
-    """Return what can be said in letters of the factors of a function, or why nothing can.
-
-    Only roots that the map lists are spoken of.
-    """
+    """Return what can be said in letters of a function's factors, as far as the map lists their roots."""
     if not tf.is_reduced or tf.is_large or tf.model.imaginary or tf.model.root is not None:
         why = "the formula is large, or has roots of s or complex coefficients"
         return (FactorInLetters("", None, note=why),)
@@ -174,10 +171,7 @@ class _Axis:
     def _equation(
         self, terms: Mapping[Key, Factored], whole: Factored, kernels: Mapping[str, tuple[str, str, Factored]]
     ) -> tuple[dict[str, Factored], Expression]:
-        """Return names of ratios of parameters, and what is zero in them.
-
-        All is divided by the coefficient that is most of the distributed members' own parameters.
-        """
+        """Return names of ratios of parameters, and what is zero in them."""
         ring, model, ratios = self.reader.tf.ring, self.reader.tf.model, dict[str, Factored]()
         used = [e for u in model.elements if isinstance(u.element, LineElement) for _, e in u.values]
         native = {n.name for e in used for n in names(e) if isinstance(n, Name)}

@@ -32,10 +32,7 @@ from symflex.transfer.lowest_terms import cancel
 
 
 def truncated(tf: TransferFunction, order: int) -> tuple[TransferFunction, PrintedForm]:
-    """Return a distributed function as a rational one, in letters, up to a power of s.
-
-    Raises UsageError: SF902 for a function whose waves do not come to rest at s = 0.
-    """
+    """Return a distributed function as a rational one in letters, up to a power of s."""
     if tf.is_rational:
         whole = Approximation(("it is a rational function of s already",), {"kind": "order"}, is_whole=True)
         return tf, replace(print_form(tf), approximation=whole)

@@ -109,8 +109,7 @@ class Conditions:
 def conditions(model: Model, of: str = POLES, tf: str | None = None) -> Conditions:
     """Return when all poles of a lumped model, or all zeros of a function, lie in the left half-plane.
 
-    Raises ModelError: SF801 with beams, rods or delays; UsageError: SF902 for no such function; BudgetError:
-    SF501, SF502 when the conditions are too large to be found.
+    Raises SF801 with kernels; SF902 for no such function; SF501, SF502 when the conditions are too large.
     """
     if of not in (POLES, "zeros"):
         raise UsageError(Diagnostic("SF902", f"conditions are those of poles or zeros, not of '{of[:64]}'"))
@@ -222,10 +221,7 @@ class Signs:
         return int(self.is_positive(polynomial, depth)) - int(self.is_positive(-polynomial, depth))
 
     def is_positive(self, polynomial: fmpz_mpoly, depth: int = SQUARES) -> bool:
-        """Tell whether a polynomial is proved to be positive for all values.
-
-        Its terms are, or its coefficients in one letter, or a quadratic in it whose discriminant is negative.
-        """
+        """Tell whether a polynomial is proved positive: by its terms, its coefficients, or as a quadratic."""
         names = self.ring.names
         terms = [([(names[i], e) for i, e in m], c) for m, c in terms_of(polynomial)]
         is_sum = all(c > 0 and all(n in self.nonnegative or e % 2 == 0 for n, e in m) for m, c in terms)
@@ -255,10 +251,7 @@ class Signs:
         return any(f.is_zero() or self.of_polynomial(f) < 0 for f, _ in reduced)
 
     def reduced(self, needed: Sequence[fmpz_mpoly]) -> list[tuple[fmpz_mpoly, Sign]]:
-        """Return what holds exactly where some polynomials are positive, without conditions that follow.
-
-        Of conditions that are never met one is returned.
-        """
+        """Return conditions given that some polynomials are positive, one alone where it is never met."""
         known: dict[str, int] = {}
         nonzero, kept = dict[str, "fmpz_mpoly"](), dict[str, "fmpz_mpoly"]()
         split = [((-1, []) if f.is_zero() else irreducible_factors(f), f) for f in needed]
@@ -289,10 +282,7 @@ class Signs:
 
 
 def _check(tf: TransferFunction, signs: Signs, moving: Sequence[Factor], found: Found) -> None:
-    """Compare conditions with roots, and what is printed with its polynomial, at random values.
-
-    ``moving`` are polynomials, each with 2 where it is even in s, else 1. Raises InternalError: SF992.
-    """
+    """Compare conditions, and what is printed, with the roots of ``moving`` at random values; SF992."""
     random, ring, known = Random(tf.name), signs.ring, dict[str, acb]()
 
     def value(polynomial: fmpz_mpoly) -> acb:

@@ -52,11 +52,7 @@ STYLE_ATTRIBUTE: Final = re.compile(r' style="([^"]*)"')
 
 
 def live_page(models: Sequence[tuple[Model, Sequence[tuple[str, str]]]], progress: Progress) -> str:
-    """Return the page of models, each with the pairs (output, input) that are shown.
-
-    Raises what derivations and exports of these functions raise, among them ModelError: SF233 a number that
-    no double holds, SF251 loss factors, which hold on the frequency axis alone.
-    """
+    """Return the page of models, each with the pairs (output, input) that are shown."""
     package = resources.files("symflex.live")
     style = package.joinpath("page.css").read_text(encoding="utf-8")
     parts = []
@@ -194,12 +190,7 @@ def _upper(roots: Iterable[Root]) -> list[list[float]]:
 
 
 def _pieces(model: Model, shown: Sequence[str]) -> list[str | list[Any]]:
-    """Return the specification's text, cut: between texts stand places of values.
-
-    A place is the number of a parameter, the unit to be written with its value, and the text there; of one
-    without a value, also what follows ``value = ...``.
-    Parameters that other files declare have no place.
-    """
+    """Return the text, cut where values stand: a place is a parameter's number, its unit, and its text."""
     source = next((o.span.source for o in model.outputs if o.span), None)
     if source is None:
         return []

@@ -54,10 +54,7 @@ ULP = 2.0**-52  # bound of the relative error of a number that is rounded to a d
 
 
 def tape_of(tf: AnyTransferFunction, names: Mapping[str, str], modes: int = MODES) -> dict[str, object]:
-    """Return the tapes of a transfer function's numerator and denominator, or why there are none.
-
-    ``names`` are the identifiers of parameters, by their names in the model.
-    """
+    """Return the tapes of numerator and denominator, or why there are none; ``names`` are identifiers."""
     if (reason := _refusal(tf)) or not tf.is_reduced:
         return {"refused": reason}
     try:

@@ -479,11 +479,7 @@ _SCRIPT_TEXT, _TINY_TEXT = 0.85, 0.7
 
 
 def identifier(text: str, style: str = "") -> str:
-    """Return a name: one letter italic by itself, several upright, unless a class says otherwise.
-
-    >>> identifier("m"), identifier("eff"), identifier("R", "rm"), identifier("EI", "it")
-    ('<mi>m</mi>', '<mi>eff</mi>', '<mi mathvariant="normal">R</mi>', '<mi class="it">EI</mi>')
-    """
+    """Return a name: one letter italic by itself, several upright, unless a class says otherwise."""
     if style == "rm":
         attribute = ' mathvariant="normal"' if len(text) == 1 else ""
     else:
@@ -509,9 +505,5 @@ def words(text: str, style: str = "") -> str:
 
 
 def row(*parts: str) -> str:
-    """Return parts as one; a single element stays as it is.
-
-    >>> row("<mi>a</mi>"), row("<mi>a</mi>", "<mi>b</mi>")
-    ('<mi>a</mi>', '<mrow><mi>a</mi><mi>b</mi></mrow>')
-    """
+    """Return parts as one; a single element stays as it is."""
     return parts[0] if len(parts) == 1 else f"<mrow>{''.join(parts)}</mrow>"

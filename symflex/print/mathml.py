@@ -107,11 +107,7 @@ _MINUS: Final = operator("-", "prefix")
 
 
 def mathml_expression(expression: Expression, labels: Mapping[str, str]) -> str:
-    """Return an expression as MathML, without the ``math`` element around it.
-
-    Labels are declared ones in LaTeX; other names get theirs from their letters. Raises TypeError for an
-    equation or a quantity of an element, which no transfer function contains.
-    """
+    """Return an expression as MathML without the ``math`` element; names without a label get one."""
     return MathmlWriter(labels).piece(expression).markup
 
 

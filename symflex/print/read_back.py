@@ -62,10 +62,7 @@ class _DiffersError(Exception):
 
 
 def read_back(tf: AnyTransferFunction, form: PrintedForm, digits: int | None = None) -> int:
-    """Return at how many points a form has the values of its transfer function; at others neither has one.
-
-    ``digits`` are those of the decimals that a form prints. Raises InternalError: SF992 where they differ.
-    """
+    """Return at how many points a form has the values of its function; SF992 where they differ."""
     every = probes_of(tf)
     probes = every if digits is None else every.declared
     try:

@@ -26,11 +26,7 @@ def symbols_of(model: Model) -> dict[str, sympy.Symbol]:
 
 
 def to_sympy(expression: Expression, symbols: Mapping[str, sympy.Symbol]) -> sympy.Expr:
-    """Return an expression as a SymPy expression, in the same nesting.
-
-    A name that ``symbols`` lack becomes a plain symbol. A function of x that only a differential equation
-    determines becomes an undefined function, or its derivative at a point.
-    """
+    """Return an expression in SymPy, in the same nesting; functions of x without a formula are undefined."""
     table = {**symbols, "pi": sympy.pi}
 
     def called(call: Call, argument: sympy.Expr) -> sympy.Expr:

@@ -131,11 +131,7 @@ def law_lines(name: str, law: Equation) -> list[str]:
 
 
 def wrapped(expression: Expression, width: int) -> list[str]:
-    """Return an expression as lines of at most ``width`` columns where it can be broken.
-
-    Sums break before a sign, products after a times, outermost first; what stands in parentheses is broken
-    only when it does not fit, and then stands to the right of its parenthesis or below it.
-    """
+    """Return an expression as lines of ``width`` columns: sums break before signs, products after a times."""
     text = format_expression(expression)
     lines = _lay_out(text, width, hanging=len(INDENT))
     if "".join(lines).replace(" ", "") != text.replace(" ", ""):

@@ -18,13 +18,7 @@ from typing import Final
 
 @dataclass(frozen=True, slots=True)
 class Width:
-    """How wide something is at the three sizes of mathematics [em of ten points].
-
-    >>> Width(1.0, 0.7, 0.5) + Width(0.5, 0.4, 0.35)
-    Width(text=1.5, script=1.1, tiny=0.85)
-    >>> Width(1.0, 0.7, 0.5).raised
-    Width(text=0.7, script=0.5, tiny=0.5)
-    """
+    """How wide something is at the three sizes of mathematics [em of ten points]."""
 
     # text, script and tiny: at full size, as a script, and as a script of a script.
     text: float

@@ -143,10 +143,7 @@ class ExpressionWriter:
         self._powers: dict[tuple[str, Fraction], Written] = {}
 
     def piece(self, expression: Expression, style: Style = Style.DISPLAY) -> Written:
-        """Return a subtree printed in a style.
-
-        Raises TypeError for an equation or a quantity of an element, which no transfer function contains.
-        """
+        """Return a subtree printed in a style; TypeError for what no transfer function contains."""
         done: list[Written] = []
         pending: list[tuple[Expression, Style, bool]] = [(expression, style, False)]
         while pending:

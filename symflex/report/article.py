@@ -128,11 +128,7 @@ def _drawn_width(picture: PageFigure) -> float:
 
 
 def picture_size(svg: str) -> tuple[float, float] | None:
-    """Return width and height of a drawing [pt], None if it does not say.
-
-    >>> picture_size('<svg height="10pt" viewBox="0 0 20 10" width="20pt">')
-    (20.0, 10.0)
-    """
+    """Return width and height of a drawing [pt], None if it does not say."""
     head = svg[: svg.find(">", svg.find("<svg")) + 1]
     width, height = (re.search(rf'\s{side}="([0-9.]+)pt"', head) for side in ("width", "height"))
     return (float(width[1]), float(height[1])) if width and height else None

@@ -52,11 +52,7 @@ def chapter_of(
     allow_outside: tuple[Path, ...] = (),
     progress: Progress | None = None,
 ) -> Chapter:
-    """Read a specification and return its chapter, with measured responses where they fit.
-
-    A section that cannot be computed, for want of a value or because it would be too large, says why in its
-    place; the others stand. Raises SpecError, ModelError when the file is not a solvable model.
-    """
+    """Read a specification, return its chapter; a section that cannot be computed says why in its place."""
     opened = attempt(lambda: Study.of(path, stem, measured, allow_outside))
     if isinstance(opened, SymflexError):
         if opened.exit_code <= SpecError.exit_code:

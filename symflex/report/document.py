@@ -150,11 +150,7 @@ def text(*runs: Run) -> Paragraph:
 
 
 def sentence(words: str) -> str:
-    """Return words with a capital letter at the beginning and a full stop at the end.
-
-    >>> sentence(": 2 of 2 roots enclosed."), sentence(", not stable"), sentence(".")
-    ('2 of 2 roots enclosed.', 'Not stable.', '')
-    """
+    """Return words with a capital letter at the beginning and a full stop at the end."""
     bare = words.strip(" .,:;")
     return f"{bare[:1].upper()}{bare[1:]}." if bare else ""
 
@@ -171,20 +167,12 @@ def parted(sections: Sequence[Section]) -> tuple[Block, ...]:
 
 
 def columns(*heads: str | tuple[str, Side]) -> tuple[PageColumn, ...]:
-    """Return columns with plain heads.
-
-    >>> [c.side for c in columns("Meaning", ("Value", "number"))]
-    ['text', 'number']
-    """
+    """Return columns with plain heads."""
     return tuple(PageColumn((h,)) if isinstance(h, str) else PageColumn((h[0],), h[1]) for h in heads)
 
 
 def filled(heads: tuple[PageColumn, ...], rows: Sequence[tuple[Cell, ...]], latex: str = "") -> Table:
-    """Return a table without the columns in which no row says anything.
-
-    >>> filled(columns("Name", "Meaning"), [(("k",), ("",)), (("b",), ("–",))]).rows
-    ((('k',),), (('b',),))
-    """
+    """Return a table without the columns in which no row says anything."""
     kept = [i for i in range(len(heads)) if any(row[i] not in (("",), ("–",)) for row in rows)]
     chosen = tuple(tuple(row[i] for i in kept) for row in rows)
     return Table(tuple(heads[i] for i in kept), chosen, latex=latex)
@@ -204,22 +192,14 @@ _RAISED: Final = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
 def exponents(decimal: str) -> str:
-    """Return a decimal such as ``-1.5e-3`` as it is written by hand.
-
-    >>> exponents("-1.5e-3"), exponents("0.25")
-    ('−1.5·10⁻³', '0.25')
-    """
+    """Return a decimal such as ``-1.5e-3`` as it is written by hand."""
     mantissa, _, exponent = decimal.partition("e")
     shown = mantissa.replace("-", "−")
     return f"{shown}·10{exponent.translate(_RAISED)}" if exponent else shown
 
 
 def unit_text(unit: str) -> str:
-    """Return a unit, nothing for a pure number.
-
-    >>> unit_text("kg*m^2"), unit_text("1")
-    ('kg·m²', '')
-    """
+    """Return a unit, nothing for a pure number."""
     raised = re.sub(r"\^(-?[0-9]+)", lambda m: m[1].translate(_RAISED), unit)
     return "" if unit == "1" else raised.replace("*", "·")
 
@@ -236,12 +216,7 @@ class ChapterPart:
 
 
 def code_of(error: SymflexError) -> int:
-    """Return the exit code for what a report lacks: 4 not certified, 5 a budget; 0 where it is not to be had.
-
-    >>> from symflex.errors import BudgetError, ModelError
-    >>> code_of(BudgetError()), code_of(ModelError())
-    (5, 0)
-    """
+    """Return the exit code for what a report lacks: 4 not certified, 5 a budget; 0 if it is not to be had."""
     return error.exit_code if error.exit_code >= UncertifiedError.exit_code else 0
 
 

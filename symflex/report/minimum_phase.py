@@ -63,11 +63,7 @@ def minimum_phase(tf: TransferFunction, explained: ZeroExplanation) -> PhaseCond
 
 
 def _has_one_scale(tf: TransferFunction) -> bool:
-    """Tell whether the numerator, powers of its symbols aside, holds nothing but kernels of one wavenumber.
-
-    Then its zeros are numbers in the product of wavenumber and length, and s is a positive multiple of a
-    power of that product.
-    """
+    """Tell whether all kernels are of one wavenumber: its product with the length then decides."""
     table = tf.kernels
     if len(table.wavenumbers) != 1 or tf.is_nameless or any(p.assume == "real" for p in tf.model.parameters):
         return False

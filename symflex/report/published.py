@@ -95,11 +95,7 @@ def with_live_pages(report: Report, named: Mapping[str, Path], allow_outside: tu
 
 
 def publish(report: Report, folder: Path, progress: Progress, *, pdf: bool | None = None) -> PublishedReport:
-    """Write a report into a folder; what stands there stays, but for files of the same names.
-
-    ``pdf`` says whether one is wanted, by default where pdflatex is there. The article is written in any
-    case. Raises UsageError: SF903 when a file cannot be written.
-    """
+    """Write a report into a folder; ``pdf`` says if one is wanted, by default where pdflatex is there."""
     progress.report(0.9, "writing")
     tex = report_article(report)
     page = folder / "index.html"

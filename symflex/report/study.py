@@ -60,11 +60,7 @@ class Study:
         measured: tuple[MeasuredResponse, ...] = (),
         allow_outside: tuple[Path, ...] = (),
     ) -> Study:
-        """Read a specification; its ``model`` blocks may read the folders of ``allow_outside`` too.
-
-        Raises SpecError with every problem of the file, printed formulas included; ModelError when the
-        equations have no unique solution.
-        """
+        """Read a specification; its ``model`` blocks may read the folders of ``allow_outside`` too."""
         model = pipeline.load(path, allow_outside)
         check_published(model, model.published)
         pipeline.check_solvable(pipeline.assemble_for_checks(with_numbers(model)))
@@ -77,11 +73,7 @@ class Study:
 
     @property
     def tfs(self) -> tuple[AnyTransferFunction, ...]:
-        """The transfer functions in symbols.
-
-        Raises ModelError, BudgetError when the equations have no unique solution, or their symbolic one
-        would be too large.
-        """
+        """The transfer functions in symbols, where their equations have a solution of reasonable size."""
         return _result(self._derived)[0]
 
     @property
@@ -234,10 +226,7 @@ class Study:
 
     @cached_property
     def colocations(self) -> tuple[DynamicColocation, ...]:
-        """Up to which frequency other outputs move with the one on which the input does work.
-
-        What the zeros mean tells which that is: of it they are the poles of the system held there.
-        """
+        """Up to which frequency other outputs move with the one on which the input does work."""
         kinds = [(tf, (tf.input.name, tf.quantity, tf.unit), meaning.kind) for tf, _, meaning in self.located]
         joints = {key: tf for tf, key, kind in kinds if kind == "colocated"}
         colocations = []

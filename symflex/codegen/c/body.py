@@ -151,11 +151,7 @@ def difference(x: Term, y: Term) -> Term:
 
 
 def product(x: Term, y: Term) -> Term:
-    """Return the product of two numbers.
-
-    >>> product(Term("w", Kind.IMAGINARY), Term("w", Kind.IMAGINARY)).text
-    '-(w * w)'
-    """
+    """Return the product of two numbers."""
     if Kind.COMPLEX in (x.kind, y.kind):
         first, second = (x, y) if y.kind is Kind.COMPLEX else (y, x)
         return _call(_PRODUCTS[first.kind], Kind.COMPLEX, first, second)
@@ -261,11 +257,7 @@ _NUMBERED = re.compile(r"[a-z]_\d{1,9}")
 
 
 def statement(opening: str, value: str, depth: int) -> list[str]:
-    """Return ``opening value;`` on as many lines as it needs.
-
-    >>> statement("return", "a + b", 1)
-    ['    return a + b;']
-    """
+    """Return ``opening value;`` on as many lines as it needs."""
     return statement_lines(f"{opening} {value};", WIDTH, STEP * depth)
 
 

@@ -29,13 +29,7 @@ OUTLINE = Outline(WIDTH - 3, formula="  ")
 
 
 def c_files(contents: Contents) -> Export:
-    """Return C99 source and header with functions of s and of arrays of frequencies.
-
-    All public names begin with the file's. Where there can be no header, they begin with ``model``, and
-    everything is one file.
-
-    Raises UsageError: SF902 when the file's name cannot stand in an include directive.
-    """
+    """Return C99 source and header, or one file; SF902 when no include directive can name it."""
     name = None if contents.is_alone else contents.stem
     if name is not None and not _FILE_NAME.fullmatch(name):
         message = f"'{inert(name)[:64]}' cannot be the name of a C header"

@@ -353,8 +353,7 @@ def _fitted(values: EnclosedValues, located: PoleZeroMap, end: Fraction) -> Band
 def _fit(values: EnclosedValues, made: BandForm, count: int) -> tuple[float, list[float], list[float]] | None:
     """Return the gain and the Chebyshev coefficients of the logarithm of what roots leave.
 
-    On ``s = j x end`` its real part is even in x, its imaginary part odd; in ``v = 1 - 2 x^2`` points x are
-    Chebyshev's. The imaginary part is continued from point to point along its derivative.
+    Its imaginary part is continued from point to point along the derivative.
     """
     nodes = []
     for i in range(count):
@@ -402,12 +401,7 @@ def _left(made: BandForm, s: acb, value: acb, slope: acb) -> tuple[acb, acb]:
 
 
 def _chebyshev(samples: Sequence[arb]) -> list[float]:
-    """Return the coefficients of the polynomial with given values at Chebyshev points, from v = 1 down.
-
-    >>> from math import pi
-    >>> [abs(round(c, 12)) for c in _chebyshev([arb((2 * i + 1) / 8 * pi).cos() for i in range(4)])]
-    [0.0, 1.0, 0.0, 0.0]
-    """
+    """Return the coefficients of the polynomial with given values at Chebyshev points, from v = 1 down."""
     count = len(samples)
     coefficients = []
     for k in range(count):

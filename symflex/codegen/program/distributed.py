@@ -114,10 +114,7 @@ class Pieces:
         return self._programs[use]
 
     def of_frequency(self, use: SeriesUse) -> Piecewise | None:
-        """Return the program of the response at an angular frequency in real arithmetic.
-
-        The result is None with damping, and if it would be very long.
-        """
+        """Return the program of the response in real arithmetic, None with damping or if very long."""
         if (
             self.tf.model.root
             or self.tf.length > REAL_TERMS
@@ -738,11 +735,7 @@ def _longer_and_shorter(
     matrix: Sequence[Sequence[int]],
     values: Sequence[float],
 ) -> tuple[int, int] | None:
-    """Return which length is to be cut by which, if any.
-
-    The result is None if the denominator's largest term is largest. ``sums`` are numerator and denominator in
-    some families that share lengths; ``matrix`` has these in multiples of those with the declared ``values``.
-    """
+    """Return which length is to be cut by which, None if the denominator's largest term is largest."""
     count = range(len(values))
     for i in families:
         terms = [[in_other_lengths(key[i][0], matrix) for key in s] for s in sums]

@@ -92,10 +92,7 @@ def expand(ring: Ring, polynomial: fmpz_mpoly, families: Sequence[Family]) -> tu
 
 @cache
 def _terms(powers: tuple[Powers, ...]) -> tuple[tuple[Term, int], ...]:
-    """Return a product of powers of the kernels of one wavenumber, for all lengths together.
-
-    The numbers are over two to the power of the degree.
-    """
+    """Return a product of powers of one wavenumber's kernels, times two to the power of its degree."""
     terms = []
     # The greatest angles first, each before its opposite.
     pieces = (sorted(expanded(dict(own)), key=lambda x: (-x[0], -abs(x[1]), -x[1])) for own in powers)
@@ -146,11 +143,7 @@ def canonical(pairs: tuple[tuple[int, int], ...], parity: int) -> tuple[Term, in
 
 
 def derivative_at_zero(term: Term, position: int, order: int) -> tuple[tuple[Term, int], ...]:
-    """Return the derivative of a term with respect to ``q_position`` at zero, as a combination of terms.
-
-    >>> [derivative_at_zero((((1, 1),), 0), 0, k) for k in range(3)]
-    [(((((0, 0),), 0), 1),), (((((0, 0),), 0), 1),), ()]
-    """
+    """Return the derivative of a term with respect to ``q_position`` at zero, as a combination of terms."""
     pairs, parity = term
     a, b = pairs[position]
     real, imaginary = 1, 0

@@ -233,10 +233,7 @@ class _Schedule:
     def sections(
         self, roots: list[int], late: set[int], *, shared: bool = False
     ) -> tuple[tuple[tree.Assignment, ...], tuple[tree.Assignment, ...], tuple[tree.Assignment, ...]]:
-        """Return assignments free of s, those with s, and those in ``late``; expressions go to ``nodes``.
-
-        With ``shared``, a root that others are made of is assigned as well.
-        """
+        """Return assignments free of s, those with s, and those in ``late``; expressions go to ``nodes``."""
         reached = self._reached(roots)
         uses = self._uses(reached)
         sections: tuple[list[tree.Assignment], list[tree.Assignment], list[tree.Assignment]] = ([], [], [])

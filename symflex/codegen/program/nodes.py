@@ -163,11 +163,7 @@ class LargerRoot(CodeNode):
 
 @dataclass(frozen=True, slots=True)
 class Apply(CodeNode):
-    """An elementary function.
-
-    ``function`` is a key of ``kernels.FUNCTIONS``, ``abs``, or ``complex_exp`` and ``complex_sqrt`` where the
-    value may be complex.
-    """
+    """An elementary function: a key of ``kernels.FUNCTIONS``, ``abs``, or a complex exp or sqrt."""
 
     function: str
     argument: CodeNode
@@ -207,11 +203,7 @@ class RootFactor(CodeNode):
 
     @property
     def spelled(self) -> CodeNode:
-        """The factor in sums and products.
-
-        >>> RootFactor(Laplace(), (-2.0, 0.0), (0.0, 0.0)).spelled
-        Add(terms=(RealNumber(value=Fraction(2, 1), pi_power=0), Laplace()))
-        """
+        """The factor in sums and products."""
         minus = Negate(self.point)
         if not self.is_pair and self.re[0] < 0:
             return _sum(_real(-self.re[0]), self.point, _real(-self.re[1]))
@@ -268,10 +260,7 @@ class Solve(CodeNode):
 
 @dataclass(frozen=True, slots=True)
 class Tip:
-    """How finite solutions begin where a stiffness vanishes: ``h v' = B v``, ``z_i = h^powers_i v_i``.
-
-    See :class:`symflex.algebra.dispersion.SingularStart`.
-    """
+    """How finite solutions begin where a stiffness vanishes: ``h v' = B v``, ``z_i = h^powers_i v_i``."""
 
     places: tuple[tuple[int, ...], ...]  # per part of B its row, column, and powers of h and of the bases
     powers: tuple[int, ...]

@@ -52,10 +52,7 @@ def degree_of(polynomial: fmpz_mpoly, degrees: Sequence[int]) -> int:
 
 
 def evaluate_polynomial(forge: Forge, polynomial: fmpz_mpoly, images: RingValues) -> int:
-    """Return the expression of a polynomial; of ``polynomial / s**degree`` in the far branch.
-
-    Powers of s follow Horner's rule, and coefficients depend on parameters only wherever they can.
-    """
+    """Return a polynomial by Horner's rule in s, in the far branch over ``s**degree``."""
     groups: dict[Monomial, Terms] = {}
     total = degree_of(polynomial, images.degrees)
     varying = [i for i, d in enumerate(images.degrees) if d]

@@ -161,10 +161,7 @@ class Site:
         return self.forge.multiply([self.length(family.lengths[j]), self.value(family.dispersion.shift)])
 
     def sizes(self, dispersion: Dispersion, length: Factored) -> tuple[tuple[int, int, int], ...]:
-        """Return pairs whose products go like powers of wavenumber times length, and these powers.
-
-        The first of a pair depends on s, the second does not.
-        """
+        """Return pairs, one with s, whose products go like powers of wavenumber times length."""
         forge, x = self.forge, self.length(length)
         negative = self.axis.sign(dispersion) if self.axis is not None else False
         if negative is not None and (parts := self.plain_parts(dispersion)) is not None:

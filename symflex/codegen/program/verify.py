@@ -80,11 +80,7 @@ class Verification:
     reason: str = ""  # why it was not measured; empty when it was
 
     def text(self) -> str:
-        """Return the sentence that stands in the docstring.
-
-        >>> Verification("V/F", "closed", 3.1e-16, DEFAULT_BAND, 400).text()
-        'verified: worst relative error 3.1e-16 over 0.1 Hz ... 10 kHz against ball arithmetic'
-        """
+        """Return the sentence that stands in the docstring."""
         if self.error is None:
             return f"not verified: {self.reason}"
         error = _error_text(self.error)
@@ -99,11 +95,7 @@ def _error_text(error: float) -> str:
 
 
 def frequency_text(hertz: Fraction) -> str:
-    """Return a frequency with a prefix that keeps it short.
-
-    >>> [frequency_text(Fraction(t)) for t in ("0.1", "1000", "2.5e6", "1e-5")]
-    ['0.1 Hz', '1 kHz', '2.5 MHz', '1e-05 Hz']
-    """
+    """Return a frequency with a prefix that keeps it short."""
     for prefix, size in (("G", 10**9), ("M", 10**6), ("k", 10**3)):
         if hertz >= size:
             return f"{float(hertz / size):.6g} {prefix}Hz"

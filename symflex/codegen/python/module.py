@@ -42,11 +42,7 @@ MEASURED = (
 
 
 def python_module(contents: Contents, dialect: Dialect) -> Export:
-    """Return a module with one function ``OUT_over_IN(s, *, parameter=default, ...)`` per transfer function.
-
-    Dialects without branches on values evaluate what is not selected where it is regular, so that derivatives
-    are finite.
-    """
+    """Return a module with a function ``OUT_over_IN(s, *, parameter=default, ...)`` per transfer function."""
     model, members = contents.model, contents.members
     names = identifiers({p.name: p.name for p in model.parameters}, dialect.reserved)
     functions = identifiers({m.tf.name: m.wanted for m in members if not m.is_response}, dialect.reserved)

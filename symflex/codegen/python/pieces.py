@@ -410,14 +410,7 @@ def in_pieces(program: Piecewise) -> Piecewise:
 
 
 def cases_of(program: Piecewise) -> tuple[Cases, ...]:
-    """Return for every piece the results of tests under which it serves.
-
-    >>> from symflex.codegen.program.nodes import Condition, Laplace, Straight
-    >>> piece = CodePiece(Straight((), (), (ONE, ONE)))
-    >>> test = Condition(Laplace(), 1.0, ONE)
-    >>> cases_of(Piecewise((), Straight((), (), ()), (test, test), (0, 0, 0, 1), (piece, piece)))
-    ((((0, False),), ((0, True), (1, False))), (((0, True), (1, True)),))
-    """
+    """Return for every piece the results of tests under which it serves."""
     cases_by_piece: list[list[tuple[tuple[int, bool], ...]]] = [[] for _ in program.code]
 
     def split(table: tuple[int, ...], test: int, results: tuple[tuple[int, bool], ...]) -> None:

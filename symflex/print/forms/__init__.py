@@ -272,10 +272,7 @@ def print_forms(
 def with_shared_denominators(
     tfs: Sequence[AnyTransferFunction], forms: Sequence[PrintedForm]
 ) -> tuple[PrintedForm, ...]:
-    """Return forms in which each long denominator that several share is a name, which the first explains.
-
-    All of them are read back with that name. Raises InternalError: SF992 as :func:`print_form` does.
-    """
+    """Return forms in which each long denominator that several share is a name, which the first explains."""
     groups: dict[object, list[int]] = {}
     for i, (tf, form) in enumerate(zip(tfs, forms, strict=True)):
         if tf.model.root is None and form.name not in DECIMAL_FORMS:

@@ -253,10 +253,7 @@ class Invariants:
         return real_powers(self.ring, total), 2**highest
 
     def _without_wavenumbers(self, value: Factored) -> Factored | None:
-        """Return a value with the even powers of pairs that are left in terms of their coefficients.
-
-        ``None`` when odd ones are left.
-        """
+        """Return a value with pairs of wavenumbers in their coefficients; ``None`` if odd powers are left."""
         for number, d in enumerate(self.table.dispersions):
             if d.kind != "pair":
                 continue
@@ -300,11 +297,7 @@ def factor_by_factor(
     one: Callable[[fmpz_mpoly], Factored | None],
     whole: Callable[[fmpz_mpoly], Factored | None],
 ) -> Factored | None:
-    """Return a quotient over another ring, ``None`` if it has no image there.
-
-    ``one`` is the image of a factor, and ``whole`` that of the product of those of a side that have none by
-    themselves.
-    """
+    """Return a quotient over another ring, factor by factor or as sides; ``None`` if it has no image."""
     result = Factored.number(ring, value.unit)
     for side in (1, -1):
         rest = Factored.number(value.ring, 1)
@@ -326,11 +319,7 @@ def factor_by_factor(
 def in_krylov_functions(
     source: Ring, table: KernelTable, value: Factored
 ) -> tuple[Invariants, Factored] | None:
-    """Return the change, and a quotient in Krylov-Duncan functions; of half the lengths if it must be.
-
-    The result is ``None`` if numerator and denominator are invariant only after both are multiplied by more
-    than a wavenumber.
-    """
+    """Return the change, and a quotient in Krylov-Duncan functions, of half the lengths if it must be."""
     change = Invariants(source, table)
     converted = change.convert(value)
     if converted is not None:

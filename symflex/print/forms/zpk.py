@@ -22,11 +22,7 @@ BITS_PER_DIGIT = 4
 
 
 def zpk_form(tf: TransferFunction, digits: int) -> PrintedForm:
-    """Return gain times real first- and second-order factors, in decimals of the given digits.
-
-    Raises ModelError: SF229 when a parameter has no value; BudgetError: SF506 when the time is over;
-    UncertifiedError: SF404 when roots could not be separated, for then no factor is known to be theirs.
-    """
+    """Return gain times real first- and second-order factors, in decimals; SF404 if roots are not known."""
     check_causal(tf.model, "the zpk form")
     bound = bind(tf)
     if bound.ratio.is_zero:

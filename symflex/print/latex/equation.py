@@ -99,10 +99,7 @@ def formula_latex(
     *,
     width_mm: float,
 ) -> str:
-    """Return equations of any expressions as a display without numbers, broken where they must be.
-
-    Left sides are LaTeX already; the pairs of ``where`` are lines below the equations.
-    """
+    """Return equations, left sides in LaTeX, as a display without numbers, broken where they must be."""
     writer = Writer(labels)
     width = max(width_mm, NARROWEST_MM) / EM_MM
     # The commands of the left side are wider than what they print.

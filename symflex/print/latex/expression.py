@@ -46,10 +46,7 @@ from symflex.print.writer import (
 
 
 def latex_expression(expression: Expression, labels: Mapping[str, str], style: Style = Style.DISPLAY) -> str:
-    """Return an expression as LaTeX for math mode; names without a label get one made of their letters.
-
-    Raises TypeError for an equation or a quantity of an element, which no transfer function contains.
-    """
+    """Return an expression as LaTeX for math mode; names without a label get one made of their letters."""
     return Writer(labels).piece(expression, style).markup
 
 

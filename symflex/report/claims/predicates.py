@@ -24,11 +24,7 @@ from symflex.report.facts import ColocationFact, DataFact, LoopFacts, TransferFa
 def modes_at(
     models: Models, of: tuple[str, ...], *, hertz: tuple[float, ...], within: float, lowest: bool = False
 ) -> Finding:
-    """Tell whether poles that oscillate have these natural frequencies: all of them, or the lowest.
-
-    ``hertz`` are ascending natural frequencies [Hz], each off by at most ``within`` [Hz]; with ``lowest``
-    there may be more beyond the last one.
-    """
+    """Tell whether poles that oscillate, all or the lowest, are ``within`` [Hz] of these frequencies [Hz]."""
     lines, is_true = [], True
     for stem, function in functions(models, of):
         frequencies = [p.frequency_hz for p in function.poles if p.is_oscillatory]
@@ -56,10 +52,7 @@ def arrangement(
     zeros_at_origin: int = 0,
     other_poles: int = 0,
 ) -> Finding:
-    """Tell whether the pole-zero array is made of so many pairs, zeros at 0, and other poles.
-
-    Pairs are conjugate pairs that oscillate; ``other_poles`` are of no pair.
-    """
+    """Tell whether the array is made of so many conjugate pairs, zeros at 0, and poles of no pair."""
     lines, is_true = [], True
     for _, function in functions(models, of):
         pairs, zeros = (sum(r.is_oscillatory for r in rs) for rs in (function.poles, function.zeros))
@@ -84,10 +77,7 @@ def added_per_mode(
     zeros_are_real: bool = False,
     needs_dampers: bool = False,
 ) -> Finding:
-    """Tell whether each flexible mode adds so many zeros and poles to the model with rigid compliances.
-
-    With ``needs_dampers`` it is otherwise without dampers, which is said as a condition.
-    """
+    """Tell whether each flexible mode adds so many zeros and poles, with ``needs_dampers`` only with them."""
     lines, is_true = [], True
     for stem, function in functions(models, of):
         more_zeros, more_poles = function.added or (0, 0)
@@ -234,11 +224,9 @@ def best_fit(
     decibels: float = 0.0,
     synthetic: str = "The data in this report are synthetic.",
 ) -> Finding:
-    """Tell whether of all models that measured data are compared with, these alone are close to them.
+    """Tell whether of all models these alone are within some ``decibels`` (root mean square) of the data.
 
-    ``decibels`` is the root mean square of the error in magnitude that counts as close; 0 where the
-    publication gives no measure, and the claim is not examined. ``synthetic`` is said where the only data are
-    synthetic.
+    0 is for no measure, and the claim is not examined; ``synthetic`` is said where the only data are.
     """
     compared = [(stem, fact) for stem, facts in models.items() for fact in facts.data]
     measured = [(stem, fact) for stem, fact in compared if not fact.is_synthetic]
