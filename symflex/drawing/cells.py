@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from symflex.drawing.geometry import BOLD, LINE, THIN, Placed, Stroke
 from symflex.drawing.lettering import SMALL, column_of, name_latex, text
+from symflex.drawing.scheme import Distance, DrawnPart, End
 from symflex.drawing.symbols import (
     FORCE_BETWEEN,
     FORCE_TOGETHER,
@@ -27,9 +28,6 @@ from symflex.drawing.symbols import (
     wall,
 )
 from symflex.library.elements import CIRCUITS
-
-if TYPE_CHECKING:
-    from symflex.drawing.scheme import Distance, DrawnPart, End
 
 SPACE: Final = 3.0  # space between a symbol and a text, and between texts [points]
 WIDEST: Final = 80.0  # widest label at a symbol [points]; beyond it the element's name is written

@@ -13,8 +13,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import partial
-from typing import TYPE_CHECKING, Final, Literal
+from typing import Final, Literal
 
+from symflex.drawing.lettering import Labels
 from symflex.drawing.signals import whole
 from symflex.drawing.symbols import (
     FORCE_BETWEEN,
@@ -47,9 +48,6 @@ from symflex.library.elements import CIRCUITS, COMPONENT_DOMAIN, COMPONENTS, Lin
 from symflex.model import DrawingHints, Input, Model, NodeReference, Output, PlacedElement
 from symflex.model.along import COORDINATE, is_tapered
 from symflex.model.model import INPUT_KINDS
-
-if TYPE_CHECKING:
-    from symflex.drawing.lettering import Labels
 
 GROUND: Final = ""
 Domains = Mapping[str, str]

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final, Literal
+from typing import Final, Literal
 
+from symflex.drawing.lettering import Labels
 from symflex.expressions import (
     Attribute,
     Equation,
@@ -27,9 +28,6 @@ from symflex.expressions import (
 )
 from symflex.model import Model, PlacedBlock
 from symflex.print.forms.shapes import plain
-
-if TYPE_CHECKING:
-    from symflex.drawing.lettering import Labels
 
 Kind = Literal["input", "reading", "gain", "block", "sum", "signal", "output", "drive"]
 LONGEST: Final = 80  # letters of a sum, as LaTeX, that is written into one box

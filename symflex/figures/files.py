@@ -17,7 +17,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from io import BytesIO, StringIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 from matplotlib import rc_context
@@ -25,6 +25,8 @@ from matplotlib.backend_bases import GraphicsContextBase, RendererBase
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_pgf import RendererPgf
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
+from matplotlib.text import Text
 
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
@@ -32,11 +34,6 @@ from symflex.figures.style import DEFAULT_FONT, PRIMES, paper_style
 from symflex.files.write import write_atomically
 from symflex.print.label import read_label
 from symflex.print.latex.text import escape_text
-
-if TYPE_CHECKING:
-    from matplotlib.font_manager import FontProperties
-    from matplotlib.text import Text
-
 
 # What would differ from run to run, or from one version of matplotlib to the next, is left out.
 FORMATS: Final[dict[str, dict[str, str | None]]] = {

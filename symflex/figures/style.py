@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 from matplotlib import style
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
 from matplotlib.mathtext import MathTextParser
 
 from symflex.errors import Diagnostic, UsageError
@@ -20,8 +21,6 @@ from symflex.model.labels import GREEK
 from symflex.print.label import read_label
 
 if TYPE_CHECKING:
-    from matplotlib.font_manager import FontProperties
-
     from symflex.roots import PoleZeroMap
     from symflex.transfer import AnyTransferFunction
 

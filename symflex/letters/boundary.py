@@ -12,20 +12,30 @@ gives T. The curve is put into the characteristic function, in balls at random v
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from math import prod
 from random import Random
-from typing import TYPE_CHECKING
 
-from flint import acb, arb
+from flint import acb, arb, fmpz_mpoly
 
-from symflex.algebra import LAPLACE, Factored, irreducible_factors
+from symflex.algebra import LAPLACE, Factored, Kernel, Ring, irreducible_factors
 from symflex.algebra.ring import coefficients_of
 from symflex.balls import at_centre, ball, precision
 from symflex.errors import REPORT, Diagnostic, InternalError, ModelError, UsageError
-from symflex.expressions import Call, Name, Negative, negative, number, product_of, quotient, sum_of
+from symflex.expressions import (
+    Call,
+    Expression,
+    Name,
+    Negative,
+    negative,
+    number,
+    product_of,
+    quotient,
+    sum_of,
+)
 from symflex.letters.routh import (
     BITS,
     LONGEST,
@@ -38,7 +48,7 @@ from symflex.letters.routh import (
 )
 from symflex.loops.loop import pick_gain
 from symflex.loops.over import seen_pair
-from symflex.model import ExactValue
+from symflex.model import ExactValue, Model
 from symflex.model.analysis import lines_in_order
 from symflex.model.loss_factors import check_causal
 from symflex.print.forms import Arranger
@@ -47,19 +57,8 @@ from symflex.print.forms.frequency import FrequencyPage
 from symflex.print.forms.invariants import IMAGINARY
 from symflex.print.forms.naming import Naming
 from symflex.print.forms.notation import Line, constant_symbols, plain_printer, reachable, wave_times_length
-from symflex.transfer import BoundTransferFunction
+from symflex.transfer import BoundTransferFunction, TransferFunction
 from symflex.transfer.of_model import derive_all
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from flint import fmpz_mpoly
-
-    from symflex.algebra import Kernel, Ring
-    from symflex.expressions import Expression
-    from symflex.model import Model
-    from symflex.transfer import TransferFunction
-
 
 TINY = 2.0**-64  # radius of a value of the characteristic function on its boundary, where it vanishes
 

@@ -11,16 +11,14 @@ Word takes OMML in a document's XML; Typst takes the text between dollar signs. 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Final
+from typing import Final
 from xml.etree import ElementTree
+from xml.etree.ElementTree import Element
 from xml.sax.saxutils import escape
 
 from symflex.print.forms import PrintedForm
 from symflex.print.mathml import transfer_function_mathml
 from symflex.transfer import AnyTransferFunction
-
-if TYPE_CHECKING:
-    from xml.etree.ElementTree import Element
 
 INVISIBLE: Final = ("\u2061", "\u2062")
 NAMESPACE: Final = "http://schemas.openxmlformats.org/officeDocument/2006/math"

@@ -12,7 +12,9 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+from typing import Final, Literal, TypeAlias
+
+from matplotlib.figure import Figure
 
 from symflex.errors import SymflexError, UncertifiedError
 from symflex.expressions import Expression
@@ -20,10 +22,6 @@ from symflex.figures import render
 from symflex.model import Model
 from symflex.print.latex import latex_expression, model_labels
 from symflex.print.mathml import MathRow, mathml_expression
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 
 Verdict: TypeAlias = Literal["holds", "holds with a condition", "does not hold", "not examined"]
 Tone: TypeAlias = Literal["good", "fair", "bad", "quiet"]

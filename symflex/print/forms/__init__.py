@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from symflex.algebra import degree_in
 from symflex.errors import Diagnostic, InternalError, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.expressions import Name, Number, Sum, format_expression, names, nodes, quotient
+from symflex.expressions import Expression, Name, Number, Sum, format_expression, names, nodes, quotient
 from symflex.print.forms.arrange import Arranged, Arranger, length, reading
 from symflex.print.forms.definitions import definitions_form, shows_origin
 from symflex.print.forms.hidden import hidden_expressions, with_hidden
@@ -35,13 +36,7 @@ from symflex.print.forms.printed import (
 )
 from symflex.print.forms.shapes import S, powers_of, shaped
 from symflex.print.read_back import read_back
-from symflex.transfer import NestedTransferFunction
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-
-    from symflex.expressions import Expression
-    from symflex.transfer import AnyTransferFunction, TransferFunction
+from symflex.transfer import AnyTransferFunction, NestedTransferFunction, TransferFunction
 
 
 def _later(name: str, what: str = "form") -> Callable[..., Any]:

@@ -12,7 +12,6 @@ from functools import cache, cached_property, partial
 from itertools import accumulate, islice, product
 from math import gcd, isqrt
 from operator import add, neg, sub
-from typing import TYPE_CHECKING
 
 from flint import fmpz_mpoly
 
@@ -46,12 +45,9 @@ from symflex.expressions import (
     sum_of,
 )
 from symflex.model.model import IMAGINARY
+from symflex.print.forms.kept import KeptDefinitions
 from symflex.transfer.derive import ClosedDefinitions
 from symflex.transfer.of_model import UNASKED
-
-if TYPE_CHECKING:
-    from symflex.print.forms.kept import KeptDefinitions
-
 
 GROUP_LIMIT = 5_000  # number of terms up to which a polynomial is nested for print
 DEEPEST_NEST = 60

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import count
-from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, Dispersion, Factored, Kernel, KernelTable, Ring
 from symflex.expressions import (
@@ -26,11 +25,8 @@ from symflex.expressions import (
 )
 from symflex.print.forms.arrange import Arranger, ProductPrinter, length_sides
 from symflex.print.forms.kept import KeptDefinitions
+from symflex.print.forms.naming import Naming
 from symflex.transfer import TransferFunction
-
-if TYPE_CHECKING:
-    from symflex.print.forms.naming import Naming
-
 
 Line = tuple[str, Expression]
 

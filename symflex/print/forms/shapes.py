@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
 from math import gcd
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from flint import acb
 
@@ -51,10 +51,8 @@ from symflex.expressions.format import number_text
 from symflex.model import Model
 from symflex.model.model import IMAGINARY
 from symflex.print.forms.arrange import length
+from symflex.print.forms.printed import PrintedForm
 from symflex.transfer.enclose import enclosure, principal_values
-
-if TYPE_CHECKING:
-    from symflex.print.forms.printed import PrintedForm
 
 LARGEST: Final = 4000  # parts of a form up to which it is shaped: nobody reads longer ones
 FAR: Final = 1e60  # a frequency at which every sum has the sign of its highest power of s
