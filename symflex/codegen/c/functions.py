@@ -1,9 +1,8 @@
 """C functions of one transfer function: its value at a complex s, and its frequency response.
 
-Input: the programs of a transfer function and identifiers.
-Output: text of C functions. What depends on parameters alone is computed once per call, before the loop over
-frequencies. Where it can be, that loop has a fixed number of turns and neither branches nor calls, so that
-compilers make it work on several values at once: in lanes.
+What depends on parameters alone is computed once per call, before the loop over frequencies. Where it can be,
+that loop has a fixed number of turns and neither branches nor calls, so that compilers make it work on
+several values at once: in lanes.
 """
 
 from __future__ import annotations
@@ -102,12 +101,12 @@ class Functions:
             block.say("return", complex_term(block.term(far.values[0])).text)
             scope.enclose(f"if (cx_abs(s) > {program.limit!r}) {{", block.lines)
         scope.say("return", complex_term(scope.term(near.values[0])).text)
-        return self._wrapped_value(self._ends(scope, self._head(f"value_of_{self.name}")))
+        return self._whole_value(scope)
 
-    def _wrapped_value(self, lines: list[str]) -> list[str]:
+    def _whole_value(self, scope: Body) -> list[str]:
         """Return a function of s and, where the compiler has complex numbers, the public one."""
         return [
-            *lines,
+            *self._ends(scope, self._head(f"value_of_{self.name}")),
             "",
             "#ifndef __STDC_NO_COMPLEX__",
             *self.value_prototype.split("\n"),
@@ -123,7 +122,7 @@ class Functions:
             blocks += self._piece(f"piece_{number}_of_{self.name}", piece)
         scope = Body.of(self.members, S)
         choose(program, conditions_of(program, scope), scope, lambda k: f"piece_{k}_of_{self.name}(s, p)")
-        blocks.append(self._wrapped_value(self._ends(scope, self._head(f"value_of_{self.name}"))))
+        blocks.append(self._whole_value(scope))
         return blocks
 
     def _piece(self, name: str, piece: tree.CodePiece) -> list[list[str]]:

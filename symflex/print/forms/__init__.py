@@ -21,17 +21,18 @@ from symflex.print.forms.polynomial import (
     factored_draft,
     factored_form,
     hyperbolic_draft,
-    hyperbolic_form,
     monic_form,
     polynomial_form,
 )
 from symflex.print.forms.printed import (
     KERNELS_ONLY,
+    NOT_ENTIRE,
     Arrange,
     Begin,
     PrintedForm,
     counts_of,
     forms_of,
+    lacks,
     require,
 )
 from symflex.print.forms.shapes import S, powers_of, shaped
@@ -49,6 +50,19 @@ def _later(name: str, what: str = "form") -> Callable[..., Any]:
     return made
 
 
+def _finished(name: str) -> Arrange:
+    """Return a form that is begun as when it is a candidate for the shortest one."""
+
+    def made(tf: TransferFunction) -> PrintedForm:
+        """Begin and finish the form."""
+        draft = DISTRIBUTED_CANDIDATES[name](tf, Arranged())
+        if draft is None:
+            raise lacks(tf, name, NOT_ENTIRE)
+        return draft.finish()
+
+    return made
+
+
 FORMS: dict[str, Arrange] = {
     "polynomial": polynomial_form,
     "monic": monic_form,
@@ -56,9 +70,9 @@ FORMS: dict[str, Arrange] = {
     "factored": factored_form,
     "definitions": definitions_form,
     "zpk": _later("zpk"),
-    "hyperbolic": hyperbolic_form,
-    "krylov": _later("krylov"),
-    "vaughan": _later("vaughan"),
+    "hyperbolic": _finished("hyperbolic"),
+    "krylov": _finished("krylov"),
+    "vaughan": _finished("vaughan"),
     "frequency": _later("frequency"),
 }
 
@@ -323,9 +337,7 @@ def _shared(*parts: Expression) -> int:
 
 __all__ = [
     "CANDIDATES",
-    "DISTRIBUTED_CANDIDATES",
     "FORMS",
-    "Arrange",
     "Arranger",
     "PrintedForm",
     "counts_of",

@@ -39,13 +39,13 @@ def definitions_form(tf: TransferFunction) -> PrintedForm:
         return _collected(tidied_sum(part, tf.base.index), arranger)
 
     num, den = (rebuilt(e, tidied) for e in _rewritten(tf, arranger))
-    if tf.closed is not None:
-        closed_num, closed_den = (rebuilt(e, tidied) for e in _from_closure(tf, tf.closed))
+    if (closed := tf.closed) is not None:
+        closed_num, closed_den = (rebuilt(e, tidied) for e in _from_closure(tf, closed))
         shown = (shows_origin(tf.ratio, closed_num, closed_den), shows_origin(tf.ratio, num, den))
         # A rational factor may stand differently in the two: take both parts from one of them then.
         if shown[0] != shown[1]:
             num, den = (closed_num, closed_den) if shown[0] else (num, den)
-        elif _same_parts(tf, tf.closed):
+        elif tf.base == tf.ratio.ring and (closed.closure.open(closed.den) / tf.ratio.denominator()).is_one:
             num, den = min(closed_num, num, key=reading), min(closed_den, den, key=reading)
         elif reading(closed_num) + reading(closed_den) <= reading(num) + reading(den):
             num, den = closed_num, closed_den
@@ -144,12 +144,6 @@ def _is_large(tf: TransferFunction) -> bool:
     """Tell whether rewriting the expanded polynomials would cost more than it can shorten."""
     terms = max(tf.length, 1)
     return terms > (REWRITE_LIMIT if tf.definitions else SMALL)
-
-
-def _same_parts(tf: TransferFunction, closed: ClosedForm) -> bool:
-    """Tell whether the closed denominator opens to the expanded one, not to a multiple of it."""
-    opened = closed.closure.open(closed.den)
-    return tf.base == tf.ratio.ring and (opened / tf.ratio.denominator()).is_one
 
 
 def _from_closure(tf: TransferFunction, closed: ClosedForm) -> tuple[Expression, Expression]:

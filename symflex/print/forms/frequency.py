@@ -27,7 +27,7 @@ from symflex.expressions import (
 from symflex.model.model import IMAGINARY as LOSS_UNIT
 from symflex.print.forms.arrange import Arranger, ProductPrinter, Sides, shortest_sides
 from symflex.print.forms.economical import LARGE, angle_doubled, is_half
-from symflex.print.forms.invariants import IMAGINARY, NOT_ENTIRE, in_krylov_functions, krylov_name
+from symflex.print.forms.invariants import IMAGINARY, in_krylov_functions, krylov_name
 from symflex.print.forms.kept import KeptDefinitions
 from symflex.print.forms.naming import Naming
 from symflex.print.forms.notation import (
@@ -41,7 +41,7 @@ from symflex.print.forms.notation import (
     speed_squared,
     wave_times_length,
 )
-from symflex.print.forms.printed import PrintedForm, lacks
+from symflex.print.forms.printed import NOT_ENTIRE, PrintedForm, lacks
 from symflex.transfer import TransferFunction
 
 LONGEST_ARGUMENT = 10

@@ -36,20 +36,17 @@ def hidden_expressions(tf: AnyTransferFunction) -> Hidden:
     """Return the cancelled factors in s with their multiplicities, kernels written out."""
     if not tf.is_reduced:
         return ()
-    factors = _spelled_out(tf)
-    read_hidden(tf, PrintedForm("", number(1), number(1)), factors)
-    root = tf.model.root
-    return factors if root is None else tuple((in_roots(e, root), m) for e, m in factors)
-
-
-def _spelled_out(tf: TransferFunction) -> Hidden:
     used = tf.ring.used_in(h.polynomial for h in tf.hidden)
     if used & set(tf.kernels.generators):
         notation = notation_of(tf, used, Naming.of(tf))
         opened = _opened(notation.lines)
-        return tuple((substitute(e, opened), m) for e, m in _factors(tf, notation))
-    arranger = Arranger.plain(tf.ring, constant_symbols(tf))
-    return tuple((arranger.collected(h.polynomial), h.multiplicity) for h in tf.hidden)
+        factors = tuple((substitute(e, opened), m) for e, m in _factors(tf, notation))
+    else:
+        arranger = Arranger.plain(tf.ring, constant_symbols(tf))
+        factors = tuple((arranger.collected(h.polynomial), h.multiplicity) for h in tf.hidden)
+    read_hidden(tf, PrintedForm("", number(1), number(1)), factors)
+    root = tf.model.root
+    return factors if root is None else tuple((in_roots(e, root), m) for e, m in factors)
 
 
 def with_hidden(tf: AnyTransferFunction, form: PrintedForm) -> tuple[PrintedForm, Hidden]:

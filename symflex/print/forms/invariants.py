@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     """A polynomial with some kernels written in the K, and what it is to be multiplied by."""
 
 IMAGINARY = "j[]"
-NOT_ENTIRE = "in lowest terms its numerator and denominator could not be shown to be entire in s"
 ORDERS = {"bending": 4, "pair": 4, "wave": 2}
 Laurent = dict[tuple[int, int], tuple[int, int]]
 

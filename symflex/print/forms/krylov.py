@@ -8,33 +8,24 @@ from typing import TYPE_CHECKING
 from symflex.algebra import Factored
 from symflex.expressions import Expression, Name, negative, number, power, product_of, quotient, sum_of
 from symflex.print.forms.arrange import Arranged, Arranger, shortest_sides
-from symflex.print.forms.invariants import NOT_ENTIRE, Invariants, in_krylov_functions, krylov_name
+from symflex.print.forms.invariants import Invariants, in_krylov_functions, krylov_name
 from symflex.print.forms.kept import KeptDefinitions
 from symflex.print.forms.naming import Naming
 from symflex.print.forms.notation import Line, constant_symbols, notation_of, reachable, wavenumber_laws
 from symflex.print.forms.polynomial import in_kernels
-from symflex.print.forms.printed import BegunForm, PrintedForm, lacks, terms_of
+from symflex.print.forms.printed import BegunForm, PrintedForm, terms_of
 
 if TYPE_CHECKING:
     from symflex.print.forms.notation import Angle
     from symflex.transfer import TransferFunction
 
 
-def krylov_form(tf: TransferFunction) -> PrintedForm:
-    """Return the function in ``K_0, K_1, ...`` of the lengths, solutions along x for unit initial data.
-
-    For a beam ``K_0 = cosh(q)*cos(q)``, ``K_1 = (cosh(q)*sin(q) + sinh(q)*cos(q))/(2*mu)``, ...; for a rod
-    ``K_0 = cosh(q)``, ``K_1 = sinh(q)/gamma``. Where the exponents of field equations have no formula, the
-    solutions and their derivatives at the ends stand as ``h(l)``, ``h'(l)``.
-    """
-    draft = krylov_draft(tf, Arranged())
-    if draft is None:
-        raise lacks(tf, "krylov", NOT_ENTIRE)
-    return draft.finish()
-
-
 def krylov_draft(tf: TransferFunction, arranged: Arranged) -> BegunForm | None:
-    """Return what :func:`krylov_form` arranges; ``None`` if the function has no such form."""
+    """Begin the form in ``K_0, K_1, ...`` of the lengths, solutions along x for unit initial data.
+
+    For a beam ``K_0 = cosh(q)*cos(q)``, ``K_1 = (cosh(q)*sin(q) + sinh(q)*cos(q))/(2*mu)``, ...; where
+    exponents have no formula, the solutions and their derivatives at the ends stand as ``h(l)``, ``h'(l)``.
+    """
     if not tf.has_formula:
         return BegunForm(terms_of(tf.ratio), partial(in_kernels, tf, "krylov", tf.ratio, arranged))
     converted = in_krylov_functions(tf.ratio.ring, tf.kernels, tf.ratio)
@@ -49,13 +40,14 @@ def _krylov(tf: TransferFunction, change: Invariants, value: Factored, arranged:
     ring = change.ring
     used = ring.used_in(f for f, _ in value.factors)
     naming = Naming.of(tf)
-    families = _families(change, used, naming)
+    families: list[tuple[str, ...]] = []
     explained: set[str] = set(used)
     for i, group in enumerate(change.angles):
-        for order in range(len(families[i])):
-            if krylov_name(i, order) in used:
-                explained |= {g for a in group for g in a.kernels.values()}
-                explained |= {group[0].wavenumber} if order or len(group) > 1 else set()
+        orders = range(_order(group))
+        shown = [order for order in orders if krylov_name(i, order) in used]
+        families.append(naming.family("KLMNH", len(orders)) if shown else ("",) * len(orders))
+        explained |= {g for a in group for g in a.kernels.values()} if shown else set()
+        explained |= {group[0].wavenumber} if any(shown) or (shown and len(group) > 1) else set()
     notation = notation_of(tf, explained, naming, change.table)
     symbols = {**constant_symbols(tf), **notation.symbols}
     lines: list[Line] = []
@@ -72,14 +64,6 @@ def _krylov(tf: TransferFunction, change: Invariants, value: Factored, arranged:
     laws = {w: one.over(change.ring) for w, one in wavenumber_laws(tf).items()}
     sides = shortest_sides(printer, value, laws)
     return PrintedForm("krylov", *sides, reachable(sides, lines))
-
-
-def _families(change: Invariants, used: frozenset[str], naming: Naming) -> list[tuple[str, ...]]:
-    """Return the names of the functions of every argument."""
-    return [
-        naming.family("KLMNH", n) if any(krylov_name(i, order) in used for order in range(n)) else ("",) * n
-        for i, n in enumerate(map(_order, change.angles))
-    ]
 
 
 def _order(group: tuple[Angle, ...]) -> int:

@@ -110,13 +110,8 @@ def _irreducible(arranger: Arranger, value: Factored) -> Expression:
     return product_of([number(unit), *(p for _, p in sorted(pieces, key=lambda item: item[0]))])
 
 
-def hyperbolic_form(tf: TransferFunction) -> PrintedForm:
-    """Return the function in cosh, sinh, cos and sin of ``q = mu*l``; delays are exponentials."""
-    return in_kernels(tf, "hyperbolic", tf.ratio)
-
-
 def hyperbolic_draft(tf: TransferFunction, arranged: Arranged) -> BegunForm:
-    """Return what :func:`hyperbolic_form` arranges."""
+    """Begin the form in cosh, sinh, cos and sin of ``q = mu*l``; delays are exponentials."""
     return BegunForm(terms_of(tf.ratio), partial(in_kernels, tf, "hyperbolic", tf.ratio, arranged))
 
 

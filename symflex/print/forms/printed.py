@@ -124,6 +124,7 @@ WITHOUT_FORMULA = ("hyperbolic", "krylov", "factored", "polynomial")
 """The forms of a function whose wavenumbers have none."""
 KERNELS_ONLY, RATIONAL_ONLY = ("hyperbolic", "krylov", "vaughan"), ("monic", "constant", "zpk")
 FORMULA_ONLY = ("vaughan", "frequency")
+NOT_ENTIRE = "in lowest terms its numerator and denominator could not be shown to be entire in s"
 
 
 def functions_in(form: PrintedForm) -> dict[str, str]:

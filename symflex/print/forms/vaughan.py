@@ -51,17 +51,12 @@ from symflex.transfer import TransferFunction
 TRADE = 4  # characters that writing c_0 for a power of the wavenumber must save
 
 
-def vaughan_form(tf: TransferFunction) -> PrintedForm:
-    """Return the function in ``S = exp(-q)*sin(q)`` and ``C = exp(-q)*cos(q)`` of ``q = sqrt(T*p)``.
+def vaughan_draft(tf: TransferFunction, arranged: Arranged) -> BegunForm:
+    """Begin the form in ``S = exp(-q)*sin(q)`` and ``C = exp(-q)*cos(q)`` of ``q = sqrt(T*p)``.
 
     Here ``T = l^2/2`` and ``p = s/a``; with damping p is ``sqrt(c_0)``, which then takes the place of
     ``s/a``. Rods, shafts, strings and beams with shear or axial force are written in ``D = exp(-gamma*l)``.
     """
-    return vaughan_draft(tf, Arranged()).finish()
-
-
-def vaughan_draft(tf: TransferFunction, arranged: Arranged) -> BegunForm:
-    """Return what :func:`vaughan_form` arranges."""
     page = _DecayingPage(tf, arranged)
     variants = page.variants()
     return BegunForm(min(terms_of(v.body) for v in variants), partial(_shortest, page, variants))
