@@ -1,8 +1,5 @@
 """Transfer functions as an ES module without dependencies: everything that is printed in JavaScript.
 
-Input: the contents of a module.
-Output: its text. Read from the top: expressions, the functions that compute, the module around them.
-
 JavaScript has no complex numbers, and a pair for every intermediate value would cost ten times the
 arithmetic. So every complex value is two constants, and what is known to be real or imaginary is one::
 

@@ -1,8 +1,4 @@
-"""Transfer functions as a Julia module without dependencies: everything that is printed in Julia.
-
-Input: the contents of a module.
-Output: its text. Read from the top: expressions, the private functions that compute, the module around them.
-"""
+"""Transfer functions as a Julia module without dependencies: everything that is printed in Julia."""
 
 from __future__ import annotations
 

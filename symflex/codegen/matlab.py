@@ -1,9 +1,4 @@
-"""Transfer functions as one function file that MATLAB and Octave run: everything that is printed in MATLAB.
-
-Input: the contents of a file.
-Output: its text. Read from the top: names, rational functions for the Control System Toolbox, expressions,
-local functions that compute with columns, the file.
-"""
+"""Transfer functions as one function file for MATLAB and Octave: everything printed in MATLAB."""
 
 from __future__ import annotations
 

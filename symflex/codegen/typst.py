@@ -1,9 +1,4 @@
-"""A Typst document of a model: its title, and its transfer functions as displays.
-
-Input: transfer functions. Output: text that ``typst compile`` turns into a page.
-
-    $ frac(X (s), F (s)) = frac(1, m s^(2) + k) $
-"""
+"""A Typst document of a model: its title, and its transfer functions as displays."""
 
 from __future__ import annotations
 

@@ -1,8 +1,4 @@
-"""Symbols with their leads and texts, each in a place of its own.
-
-Input: a part and the ends to its left and right. Output: a :class:`Built`, placed parts about the axis y = 0
-from x = 0 on.
-"""
+"""Symbols with their leads and texts, each in a place of its own, about the axis y = 0 from x = 0 on."""
 
 from __future__ import annotations
 

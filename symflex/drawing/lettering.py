@@ -1,8 +1,4 @@
-"""Texts of a drawing: labels of names and expressions in mathematics, and how large they are.
-
-Input: names and expressions of a model. Output: :class:`~symflex.drawing.geometry.Lettering`, measured with
-the metrics of the fonts that come with matplotlib.
-"""
+"""Texts of a drawing: labels of names and expressions in mathematics, and how large they are."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""Responses over time, with the band their enclosures leave where that is wide enough to be seen.
-
-And what is left of a vibration after an input shaper, over the error of a frequency.
-"""
+"""Responses over time with the bands of their enclosures, and what an input shaper leaves."""
 
 from __future__ import annotations
 

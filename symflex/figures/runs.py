@@ -1,8 +1,4 @@
-"""Where the parts of a model stand in a figure of its modes.
-
-Input: a model and the shapes of its modes. Output: panels, each a row of distributed parts laid end to end or
-a row of nodes.
-"""
+"""Where the parts of a model stand in a figure of its modes: in rows, laid end to end."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator
 
 from symflex.figures.axes import Canvas, root_figure, set_round_ticks
-from symflex.figures.style import COLOURS, QUIET, label_of_name, label_of_unit
+from symflex.figures.style import COLOURS, QUIET, label_with_unit
 from symflex.loops.chart import StabilityChart, word_of
 from symflex.loops.stability_map import StabilityMap
 
@@ -69,8 +69,8 @@ def _draw_chart(chart: StabilityChart, axes: Axes, *, with_box: bool) -> None:
     axes.set_xlim(left, right)
     axes.set_ylim(low, high)
     set_round_ticks(axes, 6, 6)
-    axes.set_xlabel(_label(chart.names[0], chart.units[0]))
-    axes.set_ylabel(_label(chart.names[1], chart.units[1]))
+    axes.set_xlabel(label_with_unit(chart.names[0], chart.units[0]))
+    axes.set_ylabel(label_with_unit(chart.names[1], chart.units[1]))
 
 
 def _draw_counts(stability: StabilityMap, axes: Axes) -> None:
@@ -90,10 +90,5 @@ def _draw_counts(stability: StabilityMap, axes: Axes) -> None:
     most = max((interval.poles.right for interval in stability.intervals), default=0)
     axes.set_ylim(-0.25, max(most, 2) + 0.5)
     axes.yaxis.set_major_locator(MaxNLocator(integer=True))
-    axes.set_xlabel(_label(stability.gain, stability.unit))
+    axes.set_xlabel(label_with_unit(stability.gain, stability.unit))
     axes.set_ylabel("unstable poles")
-
-
-def _label(name: str, unit: str) -> str:
-    shown = label_of_unit(unit)
-    return f"${label_of_name(name)}$" + (f" [{shown}]" if shown else "")

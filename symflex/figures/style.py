@@ -97,10 +97,14 @@ _PAPER: Final[dict[str, object]] = {
 
 def paper_style(font: str = DEFAULT_FONT) -> AbstractContextManager[None]:
     """Return a context for a paper's style, whatever the user's settings; SF208 for any other font."""
+    return style.context(["default", _PAPER | FONTS[_known(font, "SF208")]])
+
+
+def _known(font: str, code: str) -> str:
     if font not in FONTS:
         hint = nearest(font, FONTS) or "fonts: " + ", ".join(FONTS)
-        raise UsageError(Diagnostic("SF208", f"there is no font '{font[:64]}' for figures", None, hint))
-    return style.context(["default", _PAPER | FONTS[font]])
+        raise UsageError(Diagnostic(code, f"there is no font '{font[:64]}' for figures", None, hint))
+    return font
 
 
 def family_of(text: str, font: str) -> list[str] | None:
@@ -217,6 +221,12 @@ def label_of_unit(unit: str) -> str:
 TIGHT_DOT: Final = r"\!\cdot\!"
 
 
+def label_with_unit(name: str, unit: str) -> str:
+    """Return a name in mathematics with its unit, which an axis shows."""
+    shown = label_of_unit(unit)
+    return f"${label_of_name(name)}$" + (f" [{shown}]" if shown else "")
+
+
 def power_of_ten(decimal: str, times: str) -> str:
     """Return a decimal in mathematics, without a factor 1 before a power of ten."""
     mantissa, _, exponent = decimal.partition("e")
@@ -240,8 +250,4 @@ def number_label(value: float) -> str:
 
 def checked_font(font: str | None, path: Path) -> str:
     """Return the name of a font for a figure; UsageError: SF902 when there is no such font."""
-    font = font or ("latex" if path.suffix.lower() == ".pgf" else DEFAULT_FONT)
-    if font not in FONTS:
-        hint = nearest(font, FONTS) or "fonts: " + ", ".join(FONTS)
-        raise UsageError(Diagnostic("SF902", f"there is no font '{font[:64]}' for figures", None, hint))
-    return font
+    return _known(font or ("latex" if path.suffix.lower() == ".pgf" else DEFAULT_FONT), "SF902")

@@ -32,7 +32,7 @@ from symflex.figures.style import (
     QUIET,
     label_of_frequency,
     label_of_name,
-    label_of_unit,
+    label_with_unit,
     number_label,
     paper_style,
     title_lines,
@@ -148,13 +148,9 @@ def _dims(sweep: Sweep) -> tuple[str, ...]:
 def _others(sweep: Sweep, parameter: Labelled) -> str:
     """Say what tells the lines of a family apart."""
     others = [p for p in sweep.parameters if p is not parameter and p.values.size > 1]
-    shown = [f"{_label(p)}: {_short(p.values[0])} to {_short(p.values[-1])}" for p in others]
+    ends = [(label_with_unit(p.name, p.unit), _short(p.values[0]), _short(p.values[-1])) for p in others]
+    shown = [f"{label}: {low} to {high}" for label, low, high in ends]
     return "pale to full, " + "; ".join(shown) if shown else ""
-
-
-def _label(parameter: Labelled) -> str:
-    unit = label_of_unit(parameter.unit)
-    return f"${label_of_name(parameter.name)}$" + (f" [{unit}]" if unit else "")
 
 
 def _spans_decades(values: Doubles) -> bool:
@@ -169,7 +165,7 @@ def _is_evenly_spaced(values: Doubles) -> bool:
 
 
 def _set_parameter_axis(axes: Axes, parameter: Labelled) -> None:
-    axes.set_xlabel(_label(parameter))
+    axes.set_xlabel(label_with_unit(parameter.name, parameter.unit))
     if parameter.values.size > 1:
         axes.set_xlim(float(parameter.values.min()), float(parameter.values.max()))
     if _spans_decades(parameter.values) and not _is_evenly_spaced(parameter.values):
@@ -317,7 +313,7 @@ def _magnitude_lines(sweep: Sweep, parameter: Labelled, axes: Axes) -> None:
 def _add_scale(axes: Axes, coloured: ScalarMappable, parameter: Labelled) -> None:
     """Say beside a panel which value of a parameter has which colour."""
     bar = axes.figure.colorbar(coloured, ax=axes, pad=0.02, aspect=25)
-    bar.set_label(_label(parameter), fontsize=7)
+    bar.set_label(label_with_unit(parameter.name, parameter.unit), fontsize=7)
 
 
 def _magnitude_band(sweep: Sweep, axes: Axes) -> None:

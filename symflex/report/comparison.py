@@ -63,7 +63,7 @@ def added_cell(facts: ModelFacts) -> Iterable[Run]:
         per, of = (function.modes, "") if is_even else (1, f" in {counted(function.modes, 'mode')}")
         each = f"{counted(poles // per, 'pole')}, {counted(zeros // per, 'zero')}{of}"
         runs += [each, "\n", Aside(function.tf + where), "\n"]
-    if not runs and any(f.modes and f.is_still_when_rigid for f in facts.functions):
+    if not runs and any(f.modes and f.rigid and f.rigid[0] is None for f in facts.functions):
         return (NONE, "\n", Aside("no response when rigid"))
     return runs
 

@@ -1,8 +1,4 @@
-"""What a report compares and judges: facts about each transfer function of a model, as plain data.
-
-Input: a :class:`~symflex.report.study.Study`.
-Output: a :class:`ModelFacts`. Everything in it can be sent to another process and written as JSON.
-"""
+"""What a report compares and judges: facts about each transfer function of a model, as plain data."""
 
 from __future__ import annotations
 
@@ -124,11 +120,6 @@ class TransferFacts:
         return sum(p.multiplicity for p in self.poles if p.is_oscillatory) if self.is_infinite else 0
 
     @property
-    def is_still_when_rigid(self) -> bool:
-        """Whether rigid compliances leave nothing that each mode could add to."""
-        return self.rigid is not None and self.rigid[0] is None
-
-    @property
     def added(self) -> tuple[int, int] | None:
         """Zeros and poles that flexibility adds, the listed ones of a distributed system; None without it."""
         if self.rigid is not None and self.counts is not None:
@@ -204,11 +195,6 @@ class LoopFacts:
     # high, ``None`` when there is no such frequency.
     bandwidth_hz: float | None
     is_bandwidth_limited: bool  # by a boundary; otherwise by the gains examined
-
-    @property
-    def is_always_stable(self) -> bool:
-        """Whether all gains examined are stable."""
-        return len(self.stable) == 1 and not self.crossings_hz
 
 
 @dataclass(frozen=True, slots=True)

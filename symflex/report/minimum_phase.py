@@ -76,14 +76,6 @@ def _has_one_scale(tf: TransferFunction) -> bool:
             return False
     lengths = {str(k.length) for k in table.kernels}
     kinds = {law.kind for law in table.dispersions}
-    return len(lengths) == 1 and kinds <= {"bending", "wave"} and _is_lossless(tf)
-
-
-def _is_lossless(tf: TransferFunction) -> bool:
-    """Tell whether the wavenumber is a power of s times parameters."""
-    return all(
-        len(factor) == 1
-        for law in tf.kernels.dispersions
-        for c in law.characteristic
-        for factor, _ in c.factors
-    )
+    laws = (c for law in table.dispersions for c in law.characteristic)
+    is_lossless = all(len(factor) == 1 for c in laws for factor, _ in c.factors)
+    return len(lengths) == 1 and kinds <= {"bending", "wave"} and is_lossless

@@ -1,8 +1,5 @@
 """Expressions in C, and the body of a function while it is printed: variables, statements, branches.
 
-Input: assignments and conditions of a program.
-Output: lines. What a name of a model cannot be called in C stands here too.
-
 C's own complex multiplication and division look for infinities in every result, which costs several times the
 arithmetic and depends on compiler flags. Here an expression is known to be real, imaginary or complex when it
 is printed, and only products and quotients of two complex numbers take complex arithmetic. On the frequency

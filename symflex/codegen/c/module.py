@@ -1,8 +1,4 @@
-"""Transfer functions as a C99 source file and its header.
-
-Input: the contents of the files.
-Output: the text of both files.
-"""
+"""Transfer functions as a C99 source file and its header."""
 
 from __future__ import annotations
 

@@ -1,8 +1,4 @@
-"""Measuring what a program's rounding errors are, against ball arithmetic.
-
-Input: a program and the transfer function it computes.
-Output: a :class:`Verification`, a bound that holds at every sample.
-"""
+"""Measuring what a program's rounding errors are, against ball arithmetic, at every sample."""
 
 from __future__ import annotations
 

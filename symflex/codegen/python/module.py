@@ -1,8 +1,7 @@
 """Transfer functions as one self-contained Python module: for numpy, any library of arrays, or jax.
 
-Input: the contents of a module, and the dialect it is written in, which is what libraries differ in.
-Output: its text. The same walk makes all of them, from the docstring to the tables at the end. Text of the
-model stands in them only as inert strings, whatever it says.
+The same walk makes all of them, from the docstring to the tables at the end. Text of the model stands in them
+only as inert strings, whatever it says.
 """
 
 from __future__ import annotations

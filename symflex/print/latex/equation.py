@@ -1,8 +1,4 @@
-r"""A transfer function as numbered display mathematics that fits the column.
-
-Input: a :class:`~symflex.transfer.TransferFunction` and one of its printed forms.
-Output: ``equation`` and ``align`` environments; they need amsmath and nothing else.
-"""
+"""A transfer function as numbered display mathematics that fits the column, with amsmath alone."""
 
 from __future__ import annotations
 

@@ -254,7 +254,8 @@ def unstable_at_high_gain(models: Models, of: tuple[str, ...]) -> Finding:
 
 def always_stable(models: Models, of: tuple[str, ...]) -> Finding:
     """Tell whether loops are stable for all gains examined."""
-    loops = [(stem, _loop(models, stem).is_always_stable) for stem in of]
+    found = [(stem, _loop(models, stem)) for stem in of]
+    loops = [(stem, len(loop.stable) == 1 and not loop.crossings_hz) for stem, loop in found]
     lines = [f"{stem} is {'' if is_so else 'not '}stable for all gains examined." for stem, is_so in loops]
     return judged(all(is_so for _, is_so in loops), "\n".join(lines))
 
