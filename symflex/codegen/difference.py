@@ -151,11 +151,7 @@ class DifferenceEquation:
 
 
 def difference_equation(sampled: SampledTransferFunction, *, is_direct: bool = False) -> DifferenceEquation:
-    """Return the sections of a sampled transfer function, their coefficients rounded once.
-
-    One section holds everything where ``is_direct``, or poles or zeros cannot be separated. Raises
-    ModelError: SF233 where a coefficient does not fit in double precision.
-    """
+    """Return the sections of a sampled transfer function, rounded once; one where ``is_direct``."""
     with precision(sampled.bits):
         order = len(sampled.poles)
         gain = next((c for c in sampled.numerator if c != 0), arb(0))

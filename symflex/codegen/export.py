@@ -203,9 +203,8 @@ class Outline:
 class Language:
     """A language that numeric code is exported to: the exporter that prints verified programs.
 
-    Every file has one function ``OUT_over_IN`` of s and the parameters for each transfer function. Undamped
-    distributed systems get a second one, ``OUT_over_IN_at``: the frequency response, in real arithmetic where
-    the language has it.
+    A file has a function ``OUT_over_IN`` of s and parameters for each transfer function; undamped distributed
+    systems get ``OUT_over_IN_at`` besides, the frequency response.
     """
 
     suffix: str  # of the file's name
@@ -301,9 +300,6 @@ def parts_of(file: str, dialect: str = "") -> Mapping[tuple[str, ...], str]:
     """Return the parts of a file in ``codegen/sources`` by the names that each defines.
 
     Those of a ``dialect``, another file, take the place of those that define one of the same names.
-
-    >>> [names for names in parts_of("matlab.m") if "columns" in names]
-    [('columns',)]
     """
     source = resources.files("symflex.codegen").joinpath("sources", file).read_text(encoding="utf-8")
     _, *cut = _MARK.split(source)
@@ -321,13 +317,7 @@ def parts_of(file: str, dialect: str = "") -> Mapping[tuple[str, ...], str]:
 
 
 def called_parts(code: str, parts: Mapping[tuple[str, ...], str], always: Iterable[str] = ()) -> list[str]:
-    """Return the parts that some code needs, in order, and those that ``always`` are.
-
-    Text of a model, which might look like a call, is no part of the code.
-
-    >>> called_parts("f(x)", {("a",): "def a(): pass", ("f", "g"): "def f(): a()", ("h",): ""})
-    ['def a(): pass', 'def f(): a()']
-    """
+    """Return the parts that code needs, in order, and those that ``always`` are; texts call none."""
     home = {name: names for names in parts for name in names}
     needed: set[tuple[str, ...]] = set()
     pending = [*always, *_CALL.findall(code)]

@@ -132,11 +132,7 @@ class DifferenceExporter:
     def export(
         self, model: Model, tfs: Sequence[AnyTransferFunction], stem: str = "", *, is_alone: bool = True
     ) -> Export:
-        """Return the file; accuracy that was not reached is a warning.
-
-        Raises BudgetError: SF502 for a function in nested form; ModelError: SF233 where a coefficient does
-        not fit in a double, and as of :func:`symflex.analysis.sampling.sampled_transfer_function`.
-        """
+        """Return the file; accuracy that was not reached is a warning."""
         from symflex.analysis.sampling import sampled_transfer_function  # imports mpmath, for few exports
         from symflex.codegen.difference import difference_equation
 

@@ -145,11 +145,7 @@ LETTERS = ("A", "B", "C", "D")
 def state_space_module(
     system: StateSpace, tfs: Sequence[AnyTransferFunction], *, samples: int = 400
 ) -> Export:
-    """Return a module with a function ``state_space(*, parameter=default, ...)`` that returns A, B, C, D.
-
-    Its functions are measured at some ``samples`` in the model's band, else from 0.1 Hz to 10 kHz. SF503 when
-    the text would be too long, SF233 when a number does not fit in double precision.
-    """
+    """Return a module with ``state_space(*, parameter=default, ...)`` that returns A, B, C, D, measured."""
     size = sum(v.size for _, rows, _ in system.matrices for row in rows for v in row.values())
     if size > TERM_LIMIT:
         message = f"the state equations have {size} terms; at most {TERM_LIMIT} are written"
@@ -357,12 +353,7 @@ class StateSpaceExporter:
 def _without_delays(
     model: Model, tfs: Sequence[AnyTransferFunction], sampling: Sampling
 ) -> tuple[Model, Fraction]:
-    """Return the model with 1 in place of every delay, and that which its functions have in common [s].
-
-    Each function was found to be exp(-s T) times a rational one, which 1 in place of exp(-s T) leaves.
-
-    Raises ModelError: SF235 for beams, delays in loops, and where delays differ.
-    """
+    """Return the model with 1 in place of every delay, and the delay its functions have in common [s]."""
     from symflex.analysis.sampling import delay_of  # only sampled modules ask
 
     delays = {}

@@ -61,12 +61,9 @@ def draw_model(
 def drawing_of(
     model: Model, *, values: bool = False, width_mm: float | None = None, font: str = DEFAULT_FONT
 ) -> Drawing:
-    """Lay out the drawing of a model.
+    """Lay out the drawing of a model, with numbers at the symbols where ``values``.
 
-    ``values`` writes numbers with units at the symbols. By default the drawing is as wide as a column of a
-    journal (88.5 mm), the text of a page (170 mm), or what it needs. Equal models give equal drawings.
-    Raises UsageError: SF902 when the width is not between 80 and 1000 mm or has no room for the model; SF208
-    an unknown font.
+    By default it is as wide as a column (88.5 mm), a page (170 mm), or what it needs. Raises SF902, SF208.
     """
     with paper_style(font):
         content = _content_of(model, Labels(model, values))

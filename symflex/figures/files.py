@@ -63,11 +63,10 @@ _NAMESPACES: Final = re.compile(r'\sxmlns(?::\w+)?="[^"]*"')
 
 
 def render(figure: Figure, format: str, *, font: str = DEFAULT_FONT, has_text: bool = False) -> bytes:
-    """Return a figure as the content of a file; equal figures give equal bytes.
+    """Return a figure, drawn in ``font``, as the content of a file; equal figures give equal bytes.
 
-    ``format`` is ``pdf``, ``pgf``, ``png``, ``svg`` or ``gif``, in which mode shapes move; ``font`` is that
-    in which the figure was drawn. With ``has_text`` an SVG holds texts, not outlines of letters. Raises
-    UsageError: SF208 for any other format or font, SF902 for a GIF of what does not move.
+    In ``gif`` mode shapes move. With ``has_text`` an SVG holds texts, not outlines of letters. Raises SF208
+    for any other format or font, SF902 for a GIF of what does not move.
     """
     if format not in FORMATS:
         hint = nearest(format, FORMATS) or "formats: " + ", ".join(FORMATS)
@@ -260,11 +259,7 @@ class _Renderer(RendererPgf):
 
 
 def inline_svg(svg: str, prefix: str, label: str) -> str:
-    """Return a figure that matplotlib wrote as an element of a page.
-
-    Its colours become those of the page, light or dark; its identifiers get a prefix, since a page has each
-    only once.
-    """
+    """Return a figure as an element of a page, in the colours of that, its identifiers with a prefix."""
     content = _PROLOGUE.sub("", svg, count=1)
     content = _METADATA.sub("", content)
     content = _IDENTIFIER.sub(lambda m: f"{m[1]}{prefix}-", content)

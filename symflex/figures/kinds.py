@@ -68,19 +68,14 @@ def draw(
     spread: Stated | None = None,
     model: Model | None = None,
 ) -> Figure:
-    """Draw a figure of one or several transfer functions.
+    """Draw a figure of one or several transfer functions; ``kind`` is a key of :data:`FIGURES`.
 
-    ``kind`` is a key of :data:`FIGURES`. Without ``band_hz`` [Hz] a Bode plot takes the model's ``band``, or
-    else one that shows all poles and zeros; a pole-zero plot shows resonances up to a hundred times the
-    lowest, and with it those up to its end; of modes, the lowest are shown, or those in it. ``frame`` takes
-    the place of limits that suit what is drawn; ``title`` is printed as it is, never read as mathematics. The
-    figure is 3.5 inches wide by default, or 7.16 for what needs the width of a page. :func:`render` is to be
-    told the same ``font``, a key of :data:`FONTS`. On ``ax``, axes of the user's own, it is drawn in the
-    user's style, with as many of them as it has panels; of a Bode plot, the first alone shows magnitudes.
-    With ``spread`` a pole-zero plot shades where roots may lie, of functions that were derived with numbers
-    as the ``model`` says. Raises UsageError: SF208 an unknown kind or font; SF227 an empty band; SF902 the
-    width is not between 80 and 1000 mm or too small, ``ax`` are too many or too few, or limits are of axes
-    that the figure has not; ModelError: SF402 a transfer function is identically zero.
+    Without ``band_hz`` [Hz] each kind shows what lies in the model's band, or all that matters. ``frame``
+    takes the place of limits that suit what is drawn; ``title`` is never read as mathematics. The figure is
+    3.5 inches wide by default, or 7.16 for what needs the width of a page. On ``ax``, axes of the user's own,
+    it is drawn in the user's style. With ``spread`` a pole-zero plot shades where roots may lie. Raises
+    UsageError: SF208 an unknown kind or font, SF227 an empty band, SF902 a wrong size or number of axes;
+    ModelError: SF402 a function is identically zero.
     """
     if kind not in FIGURES:
         if kind in LOOP_FIGURES:
@@ -202,11 +197,10 @@ def draw_loop(
 ) -> Figure:
     """Draw a root locus, or the loop gain ``K B/A`` or its sensitivities along the imaginary axis.
 
-    ``kind`` is a key of :data:`LOOP_FIGURES`. ``limits`` are the first and last gain of a locus, by default
-    from 0 to 10 times the nominal one; ``modes`` are traced in the locus of a loop with kernels, by default
-    those in the band, or the lowest five. ``band_hz`` are frequencies [Hz]; a locus is shown up to
-    its end. The rest is as for :func:`draw`. Raises UsageError: SF208 an unknown kind, SF804 no range, SF806
-    no straight line in the gain; UncertifiedError: SF807 the curves do not end in certified poles.
+    ``kind`` is a key of :data:`LOOP_FIGURES`; ``limits`` are the first and last gain of a locus, and
+    ``modes`` those traced in one of a loop with kernels. The rest is as for :func:`draw`. Raises UsageError:
+    SF208, SF804 no range, SF806 no straight line in the gain; UncertifiedError: SF807 curves without
+    certified ends.
     """
     if kind not in LOOP_FIGURES:
         hint = "kinds: " + ", ".join(LOOP_FIGURES)

@@ -154,11 +154,7 @@ def heading(shape: EnclosedModeShape) -> str:
 
 
 def label_of_value(value: float, digits: int) -> str:
-    r"""Return a number with all its significant digits, trailing zeros too.
-
-    >>> label_of_value(11, 4), label_of_value(12345.6, 4), label_of_value(0.000149, 3), label_of_value(2e9, 4)
-    ('11.00', '12346', '0.000149', '2.000\\cdot 10^{9}')
-    """
+    """Return a number with all its significant digits, trailing zeros too."""
     if value and not LEAST <= abs(value) < PLAIN_HIGH:
         mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
         return rf"{mantissa}\cdot 10^{{{int(exponent)}}}"

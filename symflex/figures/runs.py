@@ -139,10 +139,6 @@ def places_of_members(members: Mapping[str, tuple[str, str, Vector]]) -> dict[st
 
     A member has the joints at its ends, ``""`` for a place of its own, and how far it reaches from the first
     to the second. One that is not joined to those before begins to their right.
-
-    >>> bent = {"post": ("", "corner", (0.0, 3.0)), "bar": ("corner", "", (2.0, 0.0))}
-    >>> places_of_members({**bent, "mast": ("", "", (0.0, 10.0))})
-    {'post': ((0.0, 0.0), (0.0, 3.0)), 'bar': ((0.0, 3.0), (2.0, 3.0)), 'mast': ((5.0, 0.0), (5.0, 10.0))}
     """
     places: dict[str, Vector] = {}
     ends: dict[str, tuple[Vector, Vector]] = {}

@@ -116,13 +116,8 @@ def choose_view(
     """Choose the part of the s plane to show.
 
     It shows the roots up to the natural frequency ``high_hz`` [Hz]; without it, those ``chosen``, or the
-    resonances up to a hundred times the lowest, and the real roots of their size.
-    ``ratios`` are the smallest and the largest width over height.
-
-    >>> marks = [RootMark("pole", s) for s in (-2 + 70j, -2 - 70j, -5000 + 0j)]
-    >>> view = choose_view(marks, None, (0.6, 1.8))
-    >>> view.shows(marks[0]), view.shows(marks[2]), view.re[0] > -150
-    (True, False, True)
+    resonances up to a hundred times the lowest, and the real roots of their size. ``ratios`` are the smallest
+    and the largest width over height.
     """
     points = {mark.s for mark in marks}
     shown = _belonging_together(points) if chosen is None else set(chosen)

@@ -108,11 +108,7 @@ def _known(font: str, code: str) -> str:
 
 
 def family_of(text: str, font: str) -> list[str] | None:
-    """Return the families of a text that the font lacks letters for, None when it has them all.
-
-    >>> family_of("Two masses", "latex"), family_of("a < b", "latex"), family_of("a < b", "times")
-    (None, ['STIXGeneral', 'DejaVu Sans'], None)
-    """
+    """Return the families of a text that the font lacks letters for, None when it has them all."""
     if font != "latex" or all(c in _COMPUTER_MODERN or c > _LAST_OF_LATIN for c in text):
         return None
     return _FALLBACK

@@ -79,16 +79,12 @@ def draw_sweep(
     font: str = DEFAULT_FONT,
     ax: AxesGiven | None = None,
 ) -> Figure:
-    """Draw a sweep.
+    """Draw a sweep of modes, up to ``modes`` of them, of a response or of margins.
 
-    Over one parameter: natural frequencies and damping ratios of all modes, and their loci in the s plane,
-    coloured by the parameter; of a response, its magnitudes. Over one parameter at a few values of others: a
-    line for each of these. Otherwise, and of draws: medians and what holds 90 % of the points, from the 5th
-    to the 95th percentile.
-
-    ``modes`` are the names of those shown, from the first; ``width_mm`` is a column by default. On
-    ``ax``, as many axes as there are panels, it is drawn in the user's style and without a title. Raises
-    ModelError: SF402 there is nothing to draw; UsageError: SF902 ``ax`` are too many or too few.
+    Over one parameter: a line for each mode, and loci coloured by the parameter; at a few values of others, a
+    line for each of these. Otherwise, and of draws: medians and what holds 90 % of the points. On ``ax`` it
+    is drawn in the user's style. Raises ModelError: SF402 there is nothing to draw; UsageError: SF902 wrong
+    ``ax``.
     """
     panels = _panels(sweep, modes)
     if ax is not None:

@@ -303,8 +303,7 @@ class LimitFinder:
     ) -> dict[Key, Factored]:
         """Return a function of a pair of wavenumbers up to a power of s, without all that is even in them.
 
-        Their squares x and y have a sum and a product, by which ``x^n = u x + v``. A function that does not
-        change when they are exchanged has u = 0; one that changes its sign is ``u (x - y)/2``.
+        Of ``u x + v`` a symmetric function has u = 0, one that changes its sign is ``u (x - y)/2``.
         """
         i, j = map([*self.laws].index, law.wavenumbers)
         one, other = (Factored.generator(self._ring, name) for name in law.wavenumbers)
@@ -475,13 +474,7 @@ def times(*parts: tuple[dict[Any, Fraction], Fraction]) -> dict[Any, Fraction]:
 
 
 def written_powers(powers: Powers) -> Expression:
-    """Return powers as one fraction, equal roots as one, and the power of s apart.
-
-    >>> from symflex.expressions import Name
-    >>> half, k = Fraction(1, 2), Name("k")
-    >>> format_expression(written_powers({number(3): half, k: half, Name("m"): -3 * half, S: -3 * half}))
-    'sqrt(3*k/m)/(m*s^(3/2))'
-    """
+    """Return powers as one fraction, equal roots as one, and the power of s apart."""
     groups: dict[int, dict[Expression, int]] = {}
     for base, n in powers.items():
         whole = int(n) if base != S else 0

@@ -91,12 +91,9 @@ def label_of(name: str) -> str:
 
 
 def labels_of(named: Iterable[tuple[str, str]], reserved: Mapping[str, str]) -> dict[str, str]:
-    r"""Return a label for every name, no two alike.
+    """Return a label for every name, no two alike.
 
     ``named`` are names with their declared labels, which may be empty; labels in ``reserved`` are taken.
-
-    >>> labels_of([("m_1", ""), ("m1", ""), ("k", "k_t")], {"s": "s"})
-    {'s': 's', 'k': 'k_t', 'm_1': 'm_{1}', 'm1': '\\mathtt{m1}'}
     """
     labels = dict(reserved)
     taken = set(map(_plain, labels.values()))
@@ -182,11 +179,7 @@ def _typewriter_width(text: str) -> float:
 
 @functools.lru_cache(maxsize=4096)
 def read_label(latex: str) -> Label | None:
-    r"""Read a declared label; ``None`` when it would break a formula.
-
-    >>> read_label(r"\omega_{p1}").latex, read_label(r"\hat"), read_label(r"\text{a_b}"), read_label("x^2'")
-    ('\\omega_{p1}', None, None, None)
-    """
+    """Read a declared label; ``None`` when it would break a formula."""
     if _TYPEWRITER.fullmatch(latex):
         text = latex.removeprefix(r"\mathtt{").removesuffix("}")
         return Label(latex, always(_typewriter_width(text)), is_wordy=True)

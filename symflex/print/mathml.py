@@ -123,12 +123,7 @@ class MathmlWriter(ExpressionWriter):
         return self._widths.piece(expression, style).width
 
     def pieces(self, expression: Expression, width: float = PIECE_EM) -> tuple[str, ...]:
-        """Return an expression as pieces that follow each other, with a line's end allowed between them.
-
-        Sums are parted before their signs, then products between factors, then parentheses inside.
-
-        What is not wider than ``width`` [em] stays whole, and so does what has no place to be parted.
-        """
+        """Return an expression as pieces between which a line may end, whole where it fits ``width`` [em]."""
         markups: list[str] = []
         # A sign or parenthesis beside a node stays with its first or last piece.
         pending: list[tuple[str, Expression, str]] = [("", expression, "")]
@@ -257,11 +252,9 @@ def ratio_mathml(tf: AnyTransferFunction) -> str:
 
 
 def transfer_function_mathml(tf: AnyTransferFunction, form: PrintedForm) -> tuple[MathRow, ...] | None:
-    """Return a transfer function as equations below each other.
+    """Return a transfer function as equations below each other, None beyond :data:`LONGEST` characters.
 
-    The quotient is one row where it is at most :data:`WIDEST_FRACTION` wide, else it has names for what is
-    wide and their rows below it; then come the ``where`` rows. None when all of it would be longer than
-    :data:`LONGEST` characters.
+    The quotient is one row, or has names for what is wide; then come the ``where`` rows.
     """
     labels = form_labels(tf, form)
     writer = MathmlWriter(labels)

@@ -81,10 +81,9 @@ def read_back(tf: AnyTransferFunction, form: PrintedForm, digits: int | None = N
 def read_hidden(
     tf: AnyTransferFunction, form: PrintedForm, factors: Sequence[tuple[Expression, int]]
 ) -> None:
-    """Compare the factors that are said to have cancelled, in the names of a form, with those that have.
+    """Compare the factors that are said to have cancelled with those that have; SF992 where they differ.
 
-    Wavenumbers are roots, of which any may be taken: a factor is one up to a fourth root of 1, and where s is
-    on the right, for to its left one may be the other. Raises InternalError: SF992 where they differ.
+    A factor is one up to a fourth root of 1, and may be that for s to the left, as wavenumbers are roots.
     """
     if not (tf.is_reduced and tf.hidden):
         return

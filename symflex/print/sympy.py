@@ -50,12 +50,7 @@ def to_sympy(expression: Expression, symbols: Mapping[str, sympy.Symbol]) -> sym
 
 
 def sympy_system(function: TransferFunction | BoundTransferFunction) -> SympyTransferFunction:
-    """Return numerator and denominator as polynomials in ``s`` with exact coefficients.
-
-    Symbols bear the parameters' assumptions; numbers are rational, with pi and roots where the model has
-    them. Raises ModelError: SF235 when it is not rational in s; BudgetError: SF501 when its polynomials are
-    too large to be multiplied out.
-    """
+    """Return numerator and denominator as polynomials in ``s`` with exact coefficients; SF235, SF501."""
     from sympy.physics.control import TransferFunction as SympyTransferFunction  # takes a while
 
     if not function.is_rational:

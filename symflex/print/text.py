@@ -220,11 +220,7 @@ _STOPS = compile_pattern(r"[()+\-/]|(?<=\*).")
 
 
 class Passage(NamedTuple):
-    """Lines, and a table below them: a paragraph of a command's output, in a terminal and on a page.
-
-    Lines that are indented further than the first belong to it. Minus signs and ``+-`` of cells are typeset
-    on a page.
-    """
+    """Lines, and a table below them: a paragraph of a command's output, in a terminal and on a page."""
 
     lines: Sequence[str]
     rows: Sequence[tuple[str, ...]] = ()

@@ -17,11 +17,7 @@ MOST_WARNINGS = 100  # as many as problems, of which a reader stops at as many t
 
 
 def warnings(model: Model, equations: Equations | None = None) -> tuple[Diagnostic, ...]:
-    """Return what a specification says that may not be meant.
-
-    That is what nothing uses, how frequencies were read, and, where the equations have a unique solution,
-    inputs, outputs and elements without effect. Those of the model's own text come first.
-    """
+    """Return what a specification says that may not be meant: what nothing uses, what has no effect."""
     try:
         equations = equations or assemble_for_checks(model)
         is_solvable = len(equations.unknowns) <= FEW_UNKNOWNS and not is_singular(equations)

@@ -394,11 +394,7 @@ class Part(NamedTuple):
 
 
 def parts_of(node: Expression) -> list[Part]:
-    """Return where an expression may be broken, in any notation; nothing of what has no such place.
-
-    A sum may be broken before its signs, a product between its factors, with plain numbers before all others,
-    and a quotient at the slash that takes the place of its bar.
-    """
+    """Return where an expression may be broken, in any notation: at signs, between factors, at a slash."""
     match node:
         case Sum(terms=terms):
             signed = [

@@ -50,12 +50,9 @@ class PublishedReport:
 def written(
     given: ReportOptions, progress: Progress, said: Callable[[str], None]
 ) -> tuple[PublishedReport, Report]:
-    """Write the report that options ask for.
+    """Write the report that options ask for; ``said`` is told how many models and responses there are.
 
-    With ``jobs`` of 0 all models are computed in this process. ``said`` is told how many models and measured
-    responses there are. The warnings of the report name what was left out, too. Raises SpecError, ModelError:
-    With every problem of all files that are not solvable models, before anything is computed; UsageError:
-    SF902 no specification; SF903 a file cannot be written.
+    Raises SpecError, ModelError with every problem of all files before anything is computed; UsageError.
     """
     folder, paths = Path(given.output), [file_or_example(spec) for spec in given.specs]
     check_folder(folder)
@@ -135,12 +132,9 @@ def has_compiler() -> bool:
 
 
 def compile_pdf(tex: str, figures: Mapping[str, bytes], epoch: int | None) -> bytes:
-    r"""Return a LaTeX document as PDF.
+    """Return a LaTeX document as PDF, its ``figures`` beside it; SF912 when it does not compile.
 
-    Commands that would run programs are refused, and files outside its folder are neither read nor written;
-    it includes ``figures`` by their paths beside it. ``epoch`` is the time it is given, in seconds since
-    1970; equal documents then give equal bytes. Raises SymflexError: SF912 when it does not compile, with the
-    last lines of the log.
+    Commands that would run programs are refused, and files outside its folder are neither read nor written.
     """
     environment = {**os.environ, "openout_any": "p", "openin_any": "p", "TEXMFOUTPUT": ""}
     if epoch is not None:

@@ -78,10 +78,8 @@ def find_specifications(
 ) -> tuple[Path, ...]:
     """Return the specifications that arguments name; a folder stands for all in it and its subfolders.
 
-    Those of a folder come by name, before those of folders in it. What stands in ``output``, the folder that
-    reports are written into, is left out. Raises UsageError: SF902 for a folder without any, for a link that
-    leads out of a folder and not to one of ``allow_outside``, a file of measured data, and for more than
-    :data:`MOST_MODELS`.
+    What stands in ``output`` is left out. Raises SF902 for none, for too many, and for a link that leads out
+    of a folder and not to one of ``allow_outside``.
     """
     specifications: list[Path] = []
     for path in paths:
@@ -137,11 +135,7 @@ def find_claims(
 def find_measurements(
     paths: Sequence[Path], output: Path | None = None, allow_outside: Sequence[Path] = ()
 ) -> tuple[tuple[MeasuredResponse, ...], tuple[str, ...]]:
-    """Return the measured responses in the data files of folders and below, and why others were left out.
-
-    What stands in ``output``, the folder that reports are written into, is not a measurement. A link that
-    leads out of its folder, and not to one of ``allow_outside``, is not followed.
-    """
+    """Return the measured responses in folders, outside ``output``, and why others were left out."""
     from symflex.data.measurement import read_measurement
 
     measurements: list[MeasuredResponse] = []
@@ -193,13 +187,11 @@ def write_chapters(
     measured: tuple[MeasuredResponse, ...] = (),
     allow_outside: tuple[Path, ...] = (),
 ) -> tuple[Chapter, ...]:
-    """Return the chapters, in order, computed side by side, once all specifications are checked.
+    """Return the chapters, in order, computed in so many ``processes`` once all specifications are checked.
 
-    So many ``processes`` compute several models at once, each on its own; 0 for none besides this one. In a
-    process of its own a model that ends it, or makes the program fail, costs its own chapter only.
-    ``measured`` responses are drawn with the transfer functions of the same names; ``model`` blocks may read
-    the folders of ``allow_outside`` besides those of the specifications. Raises SpecError, ModelError,
-    UsageError with every problem of all files that are not solvable models, before anything is computed.
+    In a process of its own a model that ends it costs its own chapter only. ``measured`` responses are drawn
+    with the transfer functions of the same names. Raises with every problem of all files that are not
+    solvable models.
     """
     check_specifications(named, allow_outside)
     done: dict[str, Chapter] = {}
@@ -296,11 +288,7 @@ def _chapter_in(
 
 
 def compose(chapters: Sequence[Chapter], date: str, publications: Sequence[Publication] = ()) -> Report:
-    """Return the report of chapters.
-
-    ``date`` is printed as it is, empty for none; of the publications, the first that is a source of a model
-    has its claims judged.
-    """
+    """Return the report of chapters; the first of the publications that is a source has its claims judged."""
     publication = publication_of((c.facts.source for c in chapters), publications)
     order = {name: i for i, name in enumerate(publication.models)} if publication else {}
     ordered = sorted(chapters, key=lambda c: order.get(c.facts.stem, len(order)))

@@ -182,11 +182,9 @@ RESONANCES: Final = ("omega_p", "omega_z")  # what grows in a resonance block as
 
 
 def rigid_counts(model: Model) -> Mapping[tuple[str, str], RigidCounts]:
-    """Return the zeros and poles of every transfer function as all compliances become rigid.
+    """Return the zeros and poles of every transfer function as all compliances become rigid, None for others.
 
-    Springs, torsion springs, massless beams and resonance blocks are stiffened; blocks that contain another
-    model stay as they are. Distributed models have no such limit, nor have models without any compliance.
-    Zeros are None where nothing moves, as of a structure that only springs hold to ground.
+    Zeros are None where nothing moves; distributed models and those without compliances have no such limit.
     """
     return _limits(model, lambda use: use.element.stiffness, RESONANCES, max)
 

@@ -133,11 +133,7 @@ class Study:
 
     @cached_property
     def located(self) -> tuple[tuple[TransferFunction, PoleZeroMap, ZeroExplanation], ...]:
-        """Every function with numbers that is not zero, with its roots and what its zeros mean.
-
-        The function is the one in symbols where :attr:`has_symbols` says that there is one. Empty where the
-        model has no numbers; of :attr:`unexplained` it is not known what their zeros mean.
-        """
+        """Every function with numbers that is not zero, with its roots and what its zeros mean."""
         if isinstance(self._bound, SymflexError) or self.model.imaginary:
             return ()
         by_name = {each.tf: each for each in self.maps}

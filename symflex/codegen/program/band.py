@@ -256,12 +256,9 @@ def is_closed(tf: AnyTransferFunction) -> bool:
 
 
 def band_form(values: EnclosedValues, up_to: Fraction | None = None) -> BandForm:
-    """Return the band form of a function whose ``values`` are enclosed, up to a frequency [Hz].
+    """Return the band form of a function up to a frequency [Hz], by default the end of the model's band.
 
-    By default up to the end of the model's band, or as far as the model's modes, five where it says none,
-    and five more tell. Roots that could not be proved serve where the rest proves to be smooth.
-
-    Raises ModelError: SF910 where it is not.
+    Roots that could not be proved serve where the rest proves to be smooth; SF910 where it is not.
     """
     bound = values.bound
     located, end = _located(bound, up_to)

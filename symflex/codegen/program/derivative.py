@@ -25,11 +25,6 @@ def differentiated(code: tree.Straight) -> tree.Straight:
     """Return code whose values are those of ``code``, each followed by its derivative in s.
 
     Assignments of constants stay as they are; what does not vary with s has the derivative ``0``.
-
-    >>> s, k = tree.Laplace(), tree.ParameterValue("k")
-    >>> code = tree.Straight((), (tree.Assignment("t_1", tree.Add((k, s))),), (tree.Multiply((k, s)),))
-    >>> differentiated(code).values[1]
-    ParameterValue(name='k')
     """
     assigned: dict[str, tree.CodeNode | None] = {a.name: None for a in code.constants}
     assignments: list[tree.Assignment] = []

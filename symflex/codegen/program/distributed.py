@@ -129,7 +129,6 @@ class Pieces:
         """Return the numerator (0) or denominator (1) times a factor, all over an exponential.
 
         After the value come the exponent of that, and what has no zero where the function is analytic.
-        Kernels are evaluated as exponentials, so the value cancels where arguments are small.
         """
         return self._maker(SeriesUse(REACHES[0])).side(number, factor)
 
@@ -223,11 +222,7 @@ class _PieceMaker:
         return (plains[0], plains[1]), (halves[0], halves[1])
 
     def _in_segments(self, sums: list[KernelSum]) -> list[KernelSum]:
-        """Return the sums in base lengths in each of which the denominator's largest term is largest.
-
-        Then nothing else can overflow. Differences of successive lengths, by their declared values, mostly
-        are such; where they are not, a few of them are cut as Euclid does.
-        """
+        """Return the sums in base lengths in each of which the denominator's largest term is largest."""
 
         def has_corner(i: int) -> bool:
             """Tell whether one term of the denominator has a family's largest exponents at every length."""
@@ -574,11 +569,7 @@ class _PieceMaker:
         return self.normal.reduce(polynomial)
 
     def _without_smaller(self, value: Factored, dispersion: Dispersion) -> Factored:
-        """Return a value that is finite where the smaller wavenumber is zero without negative powers of it.
-
-        With ``lambda_1^2 lambda_2^2 = c_0``, such a power becomes one of c_0, and that divides what is in
-        normal form: 1 and lambda_2^2 generate what is finite at both roots of ``x^2 + c_2 x``.
-        """
+        """Return a value finite where the smaller wavenumber is zero, without negative powers of it."""
         large, small = (Factored.generator(self.ring, w) for w in dispersion.wavenumbers)
         (first, _), (second, _) = large.factors[0], small.factors[0]
         power = value.exponent_of(second)

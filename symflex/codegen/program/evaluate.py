@@ -63,9 +63,8 @@ def evaluate(
 ) -> NDArray[np.complex128]:
     """Return the values of a program, exactly those that the generated code returns.
 
-    ``s`` is the Laplace variable [rad/s], the angular frequency for a program in real arithmetic; ``values``
-    are all parameters, by their names in the model. They broadcast together. Poles and overflows are inf or
-    nan.
+    ``s`` is in rad/s, the angular frequency for real arithmetic; ``values`` are all parameters, by name. They
+    broadcast together; poles and overflows are inf or nan.
     """
     point = np.asarray(s, dtype=float if program.is_real else complex)[()]
     given = {name: _number(values[name]) for name in program.parameters}
@@ -118,11 +117,6 @@ def number_of(node: tree.CodeNode, numbers: Mapping[str, Values]) -> Values:
     """Return the value of an expression that depends on no argument, ``None`` for one that does.
 
     ``numbers`` are the values of assignments that depend on no argument either.
-
-    >>> number_of(tree.Add((tree.RealNumber(Fraction(1)), tree.Assigned("c_1"))), {"c_1": 2.0})
-    3.0
-    >>> number_of(tree.ParameterValue("m"), {}) is None
-    True
     """
     for part in node.walk():
         if isinstance(part, (tree.ParameterValue, tree.Laplace, tree.InverseLaplace)):

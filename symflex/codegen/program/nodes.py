@@ -179,10 +179,9 @@ class Within(CodeNode):
 
 @dataclass(frozen=True, slots=True)
 class RootFactor(CodeNode):
-    """A factor of a product over roots: ``z - s``, of a pair of roots the product of two such.
+    """A factor of a product over roots: ``z - s``, two such of a pair; ``s - z`` of a negative real root.
 
-    Parts of the root z are two doubles each, the value and what that leaves. That is added last, so that all
-    digits are right also where s is close to z. Of a negative real root it is ``s - z``.
+    Parts of z are two doubles, the rest added last, so that all digits are right also where s is close to z.
     """
 
     point: CodeNode  # s

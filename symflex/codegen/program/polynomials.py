@@ -152,11 +152,10 @@ class RecurrencePlan:
 def plan_recurrences(
     ring: Ring, polynomials: Sequence[fmpz_mpoly], *, splits_s: bool = False
 ) -> RecurrencePlan:
-    """Return how to compute several polynomials of a ring with few operations.
+    """Return how to compute several polynomials of a ring with few operations; SF503 if that is long.
 
-    With ``splits_s`` they are split by s as by any other generator. Where every element has parameters of its
-    own, s runs through all of them and parts nothing; where elements share parameters it may be what parts
-    them. Raises BudgetError: SF503 when they have so little structure that looking for it takes too long.
+    With ``splits_s`` they are split by s as by any other generator, which serves elements that share
+    parameters.
     """
     planner = _Planner(ring, splits_s)
     roots = planner.plan_all([_Terms.of(polynomial) for polynomial in polynomials])

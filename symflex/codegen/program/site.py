@@ -103,11 +103,7 @@ class Site:
         return self.forge.label(self._root(self._root(quarter)), "mu")
 
     def plain_parts(self, law: Dispersion) -> tuple[int, int] | None:
-        """Return the root of ``-c_0`` (waves) or ``c_0/4`` (bending) where that is proportional to ``s^2``.
-
-        A factor free of s, and s. In real arithmetic it is the root of the magnitude, without the factor 1/4
-        for a negative ``c_0``; frequencies are positive there.
-        """
+        """Return the root of ``-c_0`` (waves) or ``c_0/4`` (bending) as a factor and s, if linear in s."""
         if law.kind not in ("wave", "bending"):
             return None
         c0, s = law.characteristic[0], self.ring.context.gen(0)
@@ -231,10 +227,7 @@ class Site:
     # ---------------------------------------------------------------------------------- sums of exponentials
 
     def exponential_sum(self, leaves: Mapping[Key, int], scales: Scales) -> int:
-        """Return a sum over its largest exponential, from the expressions of its coefficients.
-
-        Coefficients of circular terms that oscillate are given halved: such a term is twice a cosine or sine.
-        """
+        """Return a sum over its largest exponential; coefficients of circular terms are given halved."""
         used = sorted({i for i, _ in scales})
         images = [(lambda t, i=i: self._term(i, t, scales)) for i in used]
         return self._sum({tuple(k[i] for i in used): v for k, v in leaves.items()}, images)
@@ -328,10 +321,7 @@ class Site:
     def _real_term(
         self, i: int, term: RealTerm, scales: Mapping[tuple[int, int], tuple[Fraction, Fraction, int]]
     ) -> int:
-        """Return ``exp(sum((a - scale) x)) cos(sum(b x))``, or the sine, with x real.
-
-        Times a power of ``1 + tan(x/2)^2`` that is the same for all terms: so nothing is divided by it.
-        """
+        """Return ``exp(sum((a - scale) x))`` times cos or sin of ``sum(b x)``, up to what all terms share."""
         forge = self.forge
         pairs, parity = term
         factors: list[int] = []

@@ -103,10 +103,8 @@ def choose_programs(
 ) -> tuple[tuple[Piecewise, Verification], tuple[Piecewise, Verification] | None]:
     """Return the program of the form with the smallest measured error, and the measurement; twice.
 
-    The second one is for the frequency response, of undamped distributed systems only: where the language
-    ``has_real`` arithmetic for it, it computes that of the angular frequency, else it is the first one.
-    Without values nothing can be measured; recurrences are taken unless another form is much shorter. Raises
-    SF503 when every program would be too large, SF233 when a number does not fit in double precision.
+    The second one is that of the frequency response where the language ``has_real`` arithmetic for it, else
+    the first. Without values recurrences are taken unless another form is much shorter.
     """
     if tf.is_nameless and not any(law.matrix for law in tf.kernels.dispersions):
         # Exponents have no formula: the members' equations are solved, but where these are followed along x.
@@ -122,10 +120,7 @@ def choose_programs(
 def choose_band(
     tf: AnyTransferFunction, up_to_hz: Fraction | None = None, samples: int = SAMPLES
 ) -> tuple[Piecewise, Verification, tuple[str, ...]]:
-    """Return the program of the band form, how well it agrees with the function, and what is said of it.
-
-    Raises ModelError: SF229 without values for all parameters, SF910 where no band form serves.
-    """
+    """Return the program of the band form, how well it agrees with the function, and what is said of it."""
     if missing := [p.name for p in tf.parameters if p.value is None]:
         message = f"{tf.name} in band form consists of numbers, and {', '.join(missing[:NAMED])} has no value"
         raise ModelError(Diagnostic("SF229", message, None, "give values, or export it to numpy"))
@@ -154,11 +149,7 @@ def measure_values(
     form: str,
     samples: int = SAMPLES,
 ) -> Verification:
-    """Return how well values that are computed in some other way agree with a transfer function.
-
-    ``values`` takes an array of s [rad/s]; it is not called when nothing can be measured. ``form`` is what
-    the other way is called; ``samples`` are as for :func:`choose_programs`.
-    """
+    """Return how well ``values`` of s [rad/s], found in some other ``form``, agree with a function."""
     gauge = _gauge(tf, samples)
     if gauge.references is None:
         return gauge.verified(form, None)

@@ -429,11 +429,7 @@ def cases_of(program: Piecewise) -> tuple[Cases, ...]:
 
 
 def places_of(program: Piecewise, values: Mapping[str, float]) -> tuple[complex, ...]:
-    """Return for every piece an argument at which it is regular, some way from where others take over.
-
-    Parameters without a value count as 1: places need not be exact, since between a piece's overflow and its
-    loss of all digits lie many orders of magnitude.
-    """
+    """Return for every piece an argument at which it is regular, some way from where others take over."""
     given = {name: values.get(name, 1.0) for name in program.parameters}
     points = SIZES[:, None] * DIRECTIONS
     with np.errstate(all="ignore"):
@@ -453,8 +449,7 @@ def _place(
 ) -> complex:
     """Return a place, near the logarithm aimed at and in a direction in which the piece serves.
 
-    Series bear arguments that are too large better than exponentials bear small ones, which cancel: a piece
-    that serves nowhere for these parameters is put beyond the last change from one piece to another.
+    One that serves nowhere for these parameters is put beyond the last change from one piece to another.
     """
     rows = np.flatnonzero(serves.any(axis=1))
     logarithms = np.log10(SIZES)

@@ -108,11 +108,9 @@ def print_form(
 ) -> PrintedForm:
     """Return a transfer function in the named form, or in the one that prints shortest.
 
-    ``form`` is a key of :data:`FORMS`; functions derived nested have the form ``nested`` and no other.
-    ``digits`` are the significant ones of forms that print decimals. What is ``arranged`` already, of
-    functions of the same model, is not arranged again. Raises UsageError: SF902 when there is no such form,
-    or the function has none; ModelError: SF229 when the form needs numbers and a parameter has none;
-    InternalError: SF992 when the form, read back, is not the function.
+    ``form`` is a key of :data:`FORMS`. What is ``arranged`` already, of functions of the same model, is not
+    arranged again. Raises SF902 when there is no such form, SF229 when it needs numbers; SF992 when the form,
+    read back, is not the function.
     """
     made = _arranged(tf, form, digits, arranged)
     read_back(tf, made, digits if made.name in DECIMAL_FORMS else None)

@@ -129,7 +129,7 @@ class _Taper:
         return [c for row in self.law.matrix for c in row]
 
     def at(self, value: Factored, place: Factored) -> Factored:
-        """Return a coefficient at a place, which is the start where there are exponentials."""
+        """Return it, with ``u' = c v`` and ``v' = b u + e v``, where v is the second state and a'/a = -e."""
         names = [value.ring.generator(name) for name in self.exponentials]
         factors = tuple((f, e) for f, e in value.factors if f not in names)
         return _put(Factored(value.ring, value.unit, factors), place)

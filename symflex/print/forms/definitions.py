@@ -24,9 +24,8 @@ SMALL = 200  # number of terms up to which every arrangement is tried
 def definitions_form(tf: TransferFunction) -> PrintedForm:
     """Return the shortest print that keeps sums of the network and definitions closed.
 
-    Numerator and denominator each have two candidates, and the shorter one is taken: the elimination's own
-    closed form, and the expanded polynomial rewritten in the definitions by exact division. Functions with
-    kernels are printed as in the hyperbolic form.
+    Candidates are the elimination's own closed form, and the expanded polynomial rewritten in the
+    definitions.
     """
     if not tf.is_rational:
         return in_kernels(tf, "definitions", tf.ratio)

@@ -49,8 +49,8 @@ def economical(tf: TransferFunction) -> TransferFunction:
 def apart(tf: TransferFunction) -> TransferFunction:
     """Return the same function in kernels of two multiples of a base length where it has fewer terms so.
 
-    A sensor at ``3*l/10`` has kernels of ``l/10`` up to their twentieth power; in those of ``l`` and
-    ``3*l/10`` it is what a person would write. These are not independent, which is for print alone.
+    A sensor at ``3*l/10`` then has kernels of ``l`` and ``3*l/10``, not of ``l/10``: dependent, for print
+    alone.
     """
     if any(len(factor) > LARGE for factor, _ in tf.ratio.factors):
         return tf

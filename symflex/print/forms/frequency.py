@@ -51,8 +51,7 @@ LONGEST_ARGUMENT = 10
 def frequency_form(tf: TransferFunction) -> PrintedForm:
     """Return the function of ``omega = s/j``, each sum split into its real and its imaginary part.
 
-    The expression grammar has no imaginary unit: it stands as a name, ``j`` where that is free, with the line
-    ``j = sqrt(-1)``. With the line of omega the form holds for every complex s, as every form does.
+    The imaginary unit is a name with the line ``j = sqrt(-1)``, so the form holds for every complex s.
     """
     return FrequencyPage(tf).form()
 
@@ -178,11 +177,7 @@ class FrequencyPage:
         return self._in_whole_lengths(work) * scale, 0
 
     def _in_whole_lengths(self, work: fmpz_mpoly) -> Factored:
-        """Return a polynomial in functions of twice a half length, where all of it can be so written.
-
-        ``cosh(q)^2*(2*cos(q)^2 - 1) - cos(q)^2 + 1`` of ``q = beta*l/2`` is half of
-        ``cosh(beta*l)*cos(beta*l) + 1``.
-        """
+        """Return a polynomial in functions of twice a half length, where all of it can be so written."""
         ring, halvings = self.ring, 0
         for i, k in self._arguments:
             half, whole = _functions(i, k), _functions(i, k + 1)

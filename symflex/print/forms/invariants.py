@@ -70,10 +70,7 @@ class Invariants:
         return self.ring.taken_over(polynomial)
 
     def convert(self, value: Factored) -> Factored | None:
-        """Return a quotient in Krylov-Duncan functions, ``None`` when it needs arguments half as long.
-
-        Factors that are not invariant by themselves are multiplied with others of their side.
-        """
+        """Return a quotient in Krylov-Duncan functions, ``None`` when it needs arguments half as long."""
         kernels = [self.source.index[k.generator] for k in self.table.kernels if k.wavenumber]
         waves = [self.source.index[name] for name in self.table.wavenumbers]
 
@@ -343,10 +340,7 @@ def real_powers(ring: Ring, work: fmpz_mpoly) -> fmpz_mpoly:
 def in_exponentials(
     ring: Ring, work: fmpz_mpoly, angle: Angle
 ) -> tuple[dict[tuple[int, int], fmpz_mpoly], int]:
-    """Return 2^n times a polynomial in kernels of one angle as the coefficients of ``E^a z^b``, and n.
-
-    ``cosh(q)*cos(q)`` has four of them, each 1, and n = 2; see :func:`laurent`.
-    """
+    """Return 2^n times a polynomial in kernels of one angle as the coefficients of ``E^a z^b``, and n."""
     places = [ring.index.get(angle.kernels.get(f, "")) for f in ("cosh", "sinh", "cos", "sin")]
     parts: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
     for monomial, coefficient in work.terms():
@@ -368,10 +362,7 @@ def in_exponentials(
 
 
 def laurent(cosh: int, sinh: int, cos: int, sin: int) -> Laurent:
-    """Return ``(2 cosh)^a (2 sinh)^b (2 cos)^c (2 sin)^d`` as a sum of ``E^i z^k``.
-
-    ``E = exp(q)`` and ``z = exp(j q)``; coefficients are pairs of real and imaginary part.
-    """
+    """Return ``(2 cosh)^a (2 sinh)^b (2 cos)^c (2 sin)^d`` as a sum of ``E^i z^k``, coefficients as pairs."""
     hyperbolic = spread(cosh, sinh)
     circular = spread(cos, sin)
     # 2 sin q = -j (z - 1/z)

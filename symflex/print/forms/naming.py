@@ -34,11 +34,7 @@ class Naming:
         return taken
 
     def family(self, stems: Sequence[str], members: int) -> tuple[str, ...]:
-        """Return names numbered from zero, of the first stem that leaves all of them free.
-
-        >>> Naming({"K_1"}).family("KL", 2)
-        ('L_0', 'L_1')
-        """
+        """Return names numbered from zero, of the first stem that leaves all of them free."""
         own = (tuple(f"{stem * n}_{i}" for i in range(members)) for n in count(1) for stem in stems)
         chosen = next(family for family in own if self._taken.isdisjoint(family))
         self._taken.update(chosen)

@@ -73,11 +73,7 @@ def plain_printer(tf: TransferFunction, ring: Ring | None = None) -> ProductPrin
 def notation_of(
     tf: TransferFunction, used: Collection[str], naming: Naming, table: KernelTable | None = None
 ) -> Notation:
-    """Return names for the arguments ``q = mu*l``, the wavenumbers and what these are made of.
-
-    ``used`` are the generators that occur, wavenumbers standing by themselves among them; ``table`` holds the
-    lengths where they are not the transfer function's own.
-    """
+    """Return names for the arguments ``q = mu*l``, the wavenumbers and what these are made of."""
     printer = plain_printer(tf)
     angles = angles_of(table or tf.kernels, used)
     symbols: dict[str, Expression] = {}
@@ -104,11 +100,7 @@ def notation_of(
 def entries_of_matrices(
     tf: TransferFunction, used: Collection[str], naming: Naming, printer: ProductPrinter
 ) -> Notation:
-    """Return entries of fundamental matrices, ``Z_12(l)``, and what determines them.
-
-    That is how the states, row i, of any column j change along x, and where they start; and what the entries
-    are, if they have a closed form.
-    """
+    """Return entries of fundamental matrices, ``Z_12(l)``, what determines them, and their closed forms."""
     symbols: dict[str, Expression] = {}
     lines: list[tuple[str, Equation]] = []
     closed: list[tuple[Expression, Expression]] = []

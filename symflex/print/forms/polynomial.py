@@ -77,11 +77,7 @@ def _divided(arranger: Arranger, ring: Ring, polynomial: fmpz_mpoly, divisor: fm
 
 
 def factored_form(tf: TransferFunction) -> PrintedForm:
-    """Return numerator and denominator as products of irreducible factors over the rationals.
-
-    Powers of polynomials in roots are found too: ``m*s^2 + 2*sqrt(k*m)*s + k`` is a square. Of functions
-    with kernels the trigonometric factors too.
-    """
+    """Return numerator and denominator as products of irreducible factors, also of roots and kernels."""
     if not tf.is_rational:
         from symflex.print.forms.irreducible import irreducible_kernels  # only with beams
 

@@ -73,11 +73,9 @@ def latex_document(
     pole_zero_maps: Sequence[PoleZeroMap] = (),
     width_mm: float = TEXT_WIDTH_MM,
 ) -> str:
-    r"""Return an article with the model's parameters, transfer functions, poles, zeros and modes.
+    """Return an article with the model's parameters, transfer functions, poles, zeros and modes.
 
-    Functions and forms are pairs, in the order of print; each pole-zero map is printed after the function of
-    its name. Two runs of pdflatex or lualatex compile it, without warnings. Raises UsageError: SF902 when a
-    map belongs to none of the transfer functions.
+    Each pole-zero map is printed after the function of its name; SF902 when it belongs to none.
     """
     blocks = _blocks(model, tfs, forms, pole_zero_maps, width_mm)
     return "".join((*_opening(model, width_mm), *(block.text for block in blocks), "\\end{document}\n"))
@@ -92,13 +90,10 @@ def latex_files(
     pictures: Sequence[Picture] = (),
     width_mm: float = TEXT_WIDTH_MM,
 ) -> dict[str, str]:
-    r"""Return the same article as files to ``\input`` into a paper, and the document that inputs them all.
+    r"""Return the article as files to ``\input`` into a paper; :data:`DOCUMENT` inputs them all.
 
-    A file contains one transfer function (``V_tip_over_F.tex``), the table of its poles, zeros or hidden
-    roots (``V_tip_over_F_poles.tex``), of the parameters or of the modes, or a figure (``fig5.pgf``), and
-    names the packages that it needs. See :func:`latex_document`.
-
-    The texts stand by the names of their files; :data:`DOCUMENT` is the one to compile.
+    A file contains a transfer function, a table of roots, of parameters or of modes, or a figure, and names
+    the packages that it needs.
     """
     files: dict[str, str] = {}
     parts = list(_opening(model, width_mm, _FOR_FIGURES if pictures else ()))

@@ -53,9 +53,6 @@ def equation_label(name: str) -> str:
     r"""Return the ``\label`` of a transfer function: that of the exported functions of its name.
 
     Different names have different labels: a slash remains where ``_over_`` could be read in two ways.
-
-    >>> equation_label("V_tip/F"), equation_label("a/b_over_c")
-    ('eq:V_tip_over_F', 'eq:a/b_over_c')
     """
     plain = re.sub(r"[^A-Za-z0-9_/]", lambda m: f".{ord(m[0]):x}.", name)
     joined = plain.replace("/", _OVER)
@@ -73,12 +70,10 @@ def ratio_latex(tf: AnyTransferFunction) -> str:
 def transfer_function_latex(
     tf: AnyTransferFunction, form: PrintedForm, *, width_mm: float | None, label: str = ""
 ) -> str:
-    r"""Return a transfer function as a numbered display, with its definitions in ``where`` lines.
+    """Return a transfer function as a numbered display, with its definitions in ``where`` lines.
 
-    It is an ``equation`` when one line suffices, else an ``align`` with numerator and denominator named and
-    broken. ``width_mm`` is that of the text, set in ten points, and treated as 80 mm when it is less;
-    ``None`` never breaks a line. ``label`` stands in place of :func:`equation_label` of the name, where
-    several models share a document.
+    One line is an ``equation``, more an ``align`` with numerator and denominator named; ``width_mm`` is that
+    of the text, ``None`` for lines of any length.
     """
     writer = Writer(form_labels(tf, form))
     width = None if width_mm is None else max(width_mm, NARROWEST_MM) / EM_MM
@@ -117,12 +112,9 @@ def inline_latex(tf: AnyTransferFunction, form: PrintedForm) -> str:
 
 
 def notebook_latex(tf: AnyTransferFunction, form: PrintedForm) -> str | None:
-    r"""Return a transfer function as mathematics without delimiters, in lines where one would be too long.
+    """Return a transfer function as mathematics without delimiters, in lines where one would be too long.
 
-    Only commands that KaTeX and MathJax share are used.
-
-    It is :func:`inline_latex` or an ``aligned`` environment; None when it would be longer than
-    :data:`LONGEST_IN_NOTEBOOK` characters, which a page takes seconds to set.
+    Only what KaTeX and MathJax share is used; None beyond :data:`LONGEST_IN_NOTEBOOK` characters.
     """
     writer = Writer(form_labels(tf, form))
     width = NOTEBOOK_MM / EM_MM
@@ -270,11 +262,7 @@ def laws_and_starts(form: PrintedForm) -> Iterator[tuple[Expression, Expression]
 def _row(
     left: str, expression: Expression, writer: Writer, width: float | None, column: float, tag: float = 0.0
 ) -> _DisplayRow:
-    """Return an equation with its right side broken.
-
-    Widths are in em: of a line (None never breaks one), of the widest left side, and the room that the first
-    line leaves for its number.
-    """
+    """Return an equation with its right side broken; ``tag`` is the room left for a number [em]."""
     if width is None:
         return _DisplayRow(left, (writer.piece(expression).markup,))
     room = width - column - RELATION

@@ -137,11 +137,9 @@ _DOT: Final = r"{}\cdot "
 
 
 def break_lines(expression: Expression, writer: Writer, first: float, others: float) -> list[str]:
-    """Return an expression as lines for display.
+    """Return an expression as lines for display, the first with room ``first``, others with ``others`` [em].
 
-    ``first`` and ``others`` are the room in the first line and in those that continue it [em]; none of these
-    is used beyond the first's. Each line begins with its indentation, and all but the first with their
-    operator.
+    Each line begins with its indentation, and all but the first with their operator.
     """
     # What has no room in the first line may then stand in no other, and so need not leave it empty.
     filler = _Filler(writer, first, min(first, others))

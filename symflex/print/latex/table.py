@@ -41,11 +41,7 @@ _WRAPPED: Final = r">{{\raggedright\arraybackslash}}p{{{:.1f}mm}}"
 
 
 def parameter_table(model: Model, *, width_mm: float = COLUMNS_MM["a4"]) -> str:
-    r"""Return the table of a model's parameters: symbol, meaning, value in the unit it was given in.
-
-    Values that are not short decimals are rounded to :data:`VALUE_DIGITS` significant digits; a parameter
-    without a value is called symbolic. Needs booktabs, siunitx and array.
-    """
+    """Return the table of a model's parameters: symbol, meaning, value in the unit it was given in."""
     labels = model_labels(model)
     widths = [symbol(p.name, labels).width for p in model.settable]
     symbols = tuple(f"${labels[p.name]}$" for p in model.settable)
@@ -90,13 +86,9 @@ def _heights(texts: Iterable[str], width: float, setting: Setting) -> list[int]:
 def root_table(
     located: PoleZeroMap, kind: str, *, digits: int = ROOT_DIGITS, width_mm: float = COLUMNS_MM["a4"]
 ) -> str:
-    r"""Return the table of poles, zeros or hidden roots: both parts, frequency, damping ratio, multiplicity.
+    """Return the table of poles, zeros or hidden roots, a ``kind`` of :data:`~symflex.print.roots.KINDS`.
 
-    A conjugate pair is one row with a plus-minus sign. Each number has the digits that the root's enclosure
-    certifies, at most ``digits``; where a narrow column has no room for them fewer, but not less than three.
-    Needs booktabs and siunitx.
-
-    ``kind`` is a key of :data:`~symflex.print.roots.KINDS`.
+    Each number has the digits that the enclosure certifies, at most ``digits``, fewer in a narrow column.
     """
     entries = one_of_each_pair(roots_of(located, kind))
     columns = columns_for(PAPER_COLUMNS, [e.root for e in entries])
@@ -283,11 +275,7 @@ def tabular(columns: Sequence[TabularColumn], setting: Setting, heights: Sequenc
 def number_column(
     head: tuple[str, ...], head_widths: tuple[float, ...], cells: Sequence[str]
 ) -> TabularColumn:
-    r"""Return a column of numbers, aligned by siunitx; cells in braces are not numbers.
-
-    Cells are decimals such as ``-1.5e-3``, of which ``\pm`` may stand before; the widths of the lines of the
-    head are in em.
-    """
+    """Return a column of decimals such as ``-1.5e-3``, aligned by siunitx; cells in braces are no numbers."""
     numbers = [cell for cell in cells if not cell.startswith("{")]
     signed = any(cell.startswith(("-", r"\pm")) for cell in numbers)
     parts = [cell.removeprefix(r"\pm ").removeprefix("-").partition("e") for cell in numbers]

@@ -43,11 +43,7 @@ def siunitx_unit(unit: str) -> str | None:
 
 
 def quantity_latex(number: str, unit: str) -> str:
-    r"""Return a number with its unit; a unit that siunitx lacks is set as text.
-
-    >>> print(quantity_latex("0.5", "m"), quantity_latex("3", "1"), quantity_latex("2", "furlong"))
-    \qty{0.5}{\metre} \num{3} \num{2}~furlong
-    """
+    """Return a number with its unit; a unit that siunitx lacks is set as text."""
     written = siunitx_unit(unit)
     if written is None:
         return rf"\num{{{number}}}~{escape_text(unit)}"

@@ -49,12 +49,7 @@ def is_claims(path: Path) -> bool:
 
 
 def read_claims(path: Path) -> Publication:
-    """Return what a file claims.
-
-    Raises UsageError: SF901 when the file cannot be read; SpecError with the place of every problem: SF1xx
-    of the syntax, SF200 for another version, SF206 to SF208, SF213 and SF214 for what is wrong, unknown or
-    missing.
-    """
+    """Return what a file claims; SF901 when it cannot be read, SpecError with every problem's place."""
     root = parse(read(path)).root
     reader = Reader()
     reader.keys(root, KEYS, "a file of claims")
