@@ -10,9 +10,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 from flint import fmpz_mpoly
 
 from symflex.algebra import irreducible_factors
@@ -54,9 +54,6 @@ from symflex.state_space.popov import FieldElement, Vector
 from symflex.state_space.sampled import Sampling, sampled_state_space
 from symflex.transfer import AnyTransferFunction, bind
 from symflex.transfer.bind import read_values
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
 
 
 class StateEquations:
