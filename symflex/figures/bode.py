@@ -7,9 +7,10 @@ from contextlib import nullcontext
 from fractions import Fraction
 from itertools import cycle, islice
 from math import ceil, inf, tau
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, MultipleLocator
@@ -43,10 +44,6 @@ from symflex.letters.limits import limits_of
 from symflex.roots import Band, PoleZeroMap
 from symflex.roots.loss_modes import NO_STABILITY
 from symflex.transfer import AnyBoundFunction
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
-
 
 HEIGHT_INCHES: Final = 3.2
 LEGEND_COLUMNS, LEGEND_COLUMNS_WITH_UNITS = 3, 2

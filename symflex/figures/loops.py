@@ -7,9 +7,10 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import cycle, pairwise
 from math import pi
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
@@ -72,10 +73,6 @@ from symflex.roots import Band, PoleZeroMap
 from symflex.roots.pole_zero_map import StabilityVerdict
 from symflex.roots.root import hertz
 from symflex.transfer import AnyBoundFunction
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
-
 
 HEIGHT_INCHES: Final = 3.3
 ROOM: Final = 1.12

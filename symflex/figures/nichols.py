@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import cycle
 from math import ceil, floor
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, MultipleLocator
@@ -17,9 +18,6 @@ from symflex.figures.loops import draw_curves, point_along
 from symflex.figures.style import COLOURS, QUIET
 from symflex.loops import AnyLoop
 from symflex.transfer import AnyBoundFunction
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
 
 CLOSED_DB: Final = (12, 6, 3, 1, 0, -1, -3, -6, -12, -20)  # of L/(1 + L), with a contour each
 BESIDE: Final = 10  # least distance of a curve from the border [deg]

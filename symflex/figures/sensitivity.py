@@ -5,9 +5,10 @@ from __future__ import annotations
 from contextlib import suppress
 from fractions import Fraction
 from math import log10
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 from matplotlib.figure import Figure
 
 from symflex.analysis.response import default_band, grid_about
@@ -19,9 +20,6 @@ from symflex.loops import AnyLoop, Loop, NetworkLoop, closed_loop_roots, loop_ga
 from symflex.loops.locus import is_straight
 from symflex.loops.peak import loop_peaks
 from symflex.roots import Band
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
 
 HEIGHT_INCHES: Final = 2.4
 LOWEST_DB: Final = 63.0  # magnitudes are shown from so far below 0 dB

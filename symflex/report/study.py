@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
 from symflex import pipeline
 from symflex.analysis.explanation import ZeroExplanation, explain_zeros
@@ -28,8 +29,6 @@ from symflex.roots import PoleZeroMap
 from symflex.transfer import AnyBoundFunction, AnyTransferFunction, TransferFunction
 
 if TYPE_CHECKING:
-    import numpy.typing as npt
-
     from symflex.data.measurement import MeasuredResponse
 
 
