@@ -62,7 +62,8 @@ def joined(drawing: Drawing, joins: Sequence[Join]) -> tuple[Placed, ...]:
     ways: dict[str, list[Point]] = {}  # the first wire of each name, from which others branch
     for one in joins:
         stem = tuple(around(pair) for pair in pairwise(ways.get(one.name, [])[:-1]))
-        passed = {c for name, way in ways.items() if name != one.name for c in _passed(way)}
+        pairs = [pair for name, way in ways.items() if name != one.name for pair in pairwise(way)]
+        passed = {cell for pair in pairs for cell in _covered(around(pair), 0.5 * CELL)}
         met = {**dict.fromkeys(passed, CROSSING), **crossed}
         branch = _best(replace(one, starts=stem), blocked, met, solid) if stem else []
         if way := branch or _best(one, blocked, met, solid):
@@ -81,11 +82,6 @@ def _best(
         around(pair).grown(0.01).overlaps(box.grown(-0.3)) for pair in pairwise(points) for box in solid
     )
     return [] if is_struck else points
-
-
-def _passed(points: Sequence[Point]) -> Iterator[Cell]:
-    """Yield the cells that a way passes."""
-    yield from (c for pair in pairwise(points) for c in _covered(around(pair), 0.5 * CELL))
 
 
 def _drawn(name: str, points: Sequence[Point], *, is_branch: bool) -> Placed:

@@ -37,7 +37,7 @@ from symflex.model.spec import TableValue, parse
 from symflex.print.forms import print_form, with_hidden
 from symflex.print.html import escape_html
 from symflex.print.latex import model_labels
-from symflex.print.mathml import EQUALS, label_mathml, math_element, transfer_function_mathml
+from symflex.print.mathml import label_mathml, math_element, transfer_function_mathml
 from symflex.roots import Modes, PoleZeroMap, Progress, Root
 from symflex.transfer import AnyTransferFunction
 
@@ -284,7 +284,5 @@ def _formula(tf: AnyTransferFunction) -> str:
         return f"<p>The formula of {escape_html(tf.name)} is long: symflex derive prints it.</p>"
     lines = ['<div class="formula" tabindex="0" role="group">']
     for row in rows:
-        left = math_element(f"<mrow>{row.left}{EQUALS}</mrow>", is_display=True)
-        right = " ".join(math_element(f"<mrow>{piece}</mrow>", is_display=True) for piece in row.pieces)
-        lines.append(f'<div class="row{" where" if row.is_where else ""}">{left} {right}</div>')
+        lines.append(f'<div class="row{" where" if row.is_where else ""}">{row.elements}</div>')
     return "\n".join((*lines, "</div>"))

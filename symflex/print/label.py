@@ -283,12 +283,10 @@ class _Found:
 
     def mathml(self) -> str:
         """Return all atoms with their scripts as one element."""
-        return row(*starmap(_scripted, self.parts)) if self.parts else words("")
-
-
-def _scripted(base: str, below: str, above: str) -> str:
-    above = operator(above) if above.startswith("′") else above
-    return with_scripts(base, below, above)
+        if not self.parts:
+            return words("")
+        parts = ((base, below, operator(x) if x.startswith("′") else x) for base, below, x in self.parts)
+        return row(*starmap(with_scripts, parts))
 
 
 DEEP: Final = frozenset("fgjpqyQβγζημξρϱςϕφχψ")

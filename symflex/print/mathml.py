@@ -245,6 +245,12 @@ class MathRow:
     pieces: tuple[str, ...]  # MathML, to be shown one after the other
     is_where: bool = False  # it says what a name stands for
 
+    @property
+    def elements(self) -> str:
+        """The equation as elements of a page, with blanks where a line may end."""
+        sides = (f"{self.left}{EQUALS}", *self.pieces)
+        return " ".join(math_element(f"<mrow>{side}</mrow>", is_display=True) for side in sides)
+
 
 def ratio_mathml(tf: AnyTransferFunction) -> str:
     """Return output over input, one above the other."""

@@ -14,7 +14,7 @@ from itertools import takewhile
 from typing import Final, assert_never
 
 from symflex.figures.files import inline_svg
-from symflex.print.mathml import EQUALS, math_element
+from symflex.print.mathml import math_element
 from symflex.report.document import (
     Aside,
     Badge,
@@ -160,10 +160,7 @@ def _formula(formula: DisplayedFormula) -> Iterator[str]:
         if row.is_where and not is_below:
             yield '<div class="where"><span>where</span>'
             is_below = True
-        left = math_element(f"<mrow>{row.left}{EQUALS}</mrow>", is_display=True)
-        # Blanks between the pieces are where a line may end.
-        right = " ".join(math_element(f"<mrow>{piece}</mrow>", is_display=True) for piece in row.pieces)
-        yield f'<div class="row">{left} {right}</div>'
+        yield f'<div class="row">{row.elements}</div>'
     if is_below:
         yield "</div>"
     yield "</div>"

@@ -12,9 +12,10 @@ of the operations (Griewank and Walther, Evaluating Derivatives, 2008, chapter 3
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from functools import reduce
+from typing import Final
 
 from symflex.codegen.program import nodes as tree
 
@@ -78,6 +79,20 @@ def _derivative(node: tree.CodeNode, assigned: dict[str, tree.CodeNode | None]) 
     return _of_composed(node, assigned)
 
 
+_SLOPES: Final[dict[str, Callable[[tree.CodeNode, tree.CodeNode], tree.CodeNode]]] = {
+    "exp": lambda node, x: node,
+    "sqrt": lambda node, x: tree.Divide(tree.ONE, tree.Multiply((_TWO, node))),
+    "log": lambda node, x: tree.Divide(tree.ONE, x),
+    "sin": lambda node, x: tree.Apply("cos", x),
+    "cos": lambda node, x: tree.Negate(tree.Apply("sin", x)),
+    "sinh": lambda node, x: tree.Apply("cosh", x),
+    "cosh": lambda node, x: tree.Apply("sinh", x),
+    "tan": lambda node, x: tree.Add((tree.ONE, tree.Multiply((node, node)))),
+    "tanh": lambda node, x: tree.Add((tree.ONE, tree.Negate(tree.Multiply((node, node))))),
+}
+"""Derivatives of elementary functions, from ``node``, the function of x, and x."""
+
+
 def _of_composed(node: tree.CodeNode, assigned: dict[str, tree.CodeNode | None]) -> tree.CodeNode | None:
     def slope(of: tree.CodeNode) -> tree.CodeNode | None:
         return _derivative(of, assigned)
@@ -94,8 +109,8 @@ def _of_composed(node: tree.CodeNode, assigned: dict[str, tree.CodeNode | None])
         case tree.Apply("abs"):  # sets a radius, or adds less than a rounding: both may be held
             return None
         case tree.Apply(function, argument):
-            inner = slope(argument)
-            return None if inner is None else _product((_of_function(function, node, argument), inner))
+            inner, outer = slope(argument), function.removeprefix("complex_")
+            return inner and _product((_SLOPES[outer](node, argument), inner))
         case tree.Solutions(coefficients, terms):
             slopes = [slope(c) for c in coefficients]
             if not any(slopes):
@@ -103,30 +118,6 @@ def _of_composed(node: tree.CodeNode, assigned: dict[str, tree.CodeNode | None])
             zero = tree.RealNumber(Fraction(0))
             return tree.SolutionSlopes(coefficients, tuple(x or zero for x in slopes), terms)
     return None  # numbers, parameters and their powers
-
-
-def _of_function(function: str, node: tree.CodeNode, x: tree.CodeNode) -> tree.CodeNode:
-    """Return the derivative of an elementary function, ``node``, in its argument."""
-    match function.removeprefix("complex_"):
-        case "exp":
-            return node
-        case "sqrt":
-            return tree.Divide(tree.ONE, tree.Multiply((_TWO, node)))
-        case "log":
-            return tree.Divide(tree.ONE, x)
-        case "sin":
-            return tree.Apply("cos", x)
-        case "cos":
-            return tree.Negate(tree.Apply("sin", x))
-        case "sinh":
-            return tree.Apply("cosh", x)
-        case "cosh":
-            return tree.Apply("sinh", x)
-        case "tan":
-            return tree.Add((tree.ONE, tree.Multiply((node, node))))
-        case "tanh":
-            return tree.Add((tree.ONE, tree.Negate(tree.Multiply((node, node)))))
-    raise TypeError(function)
 
 
 def _total(terms: Sequence[tree.CodeNode | None]) -> tree.CodeNode | None:
