@@ -230,14 +230,10 @@ class Language:
     ) -> Export:
         """Return the file, the same on every run; accuracy that was not reached is a warning.
 
-        Arguments are those of :class:`Exporter`; a transfer function given twice is written once. The error
-        is measured in the model's ``[analysis]`` band, else from 0.1 Hz to 10 kHz, at so many ``samples``
-        besides those around poles and zeros. Names that cannot be the language's are altered; text of the
-        model stands in it only as inert strings and comments.
-
-        Raises BudgetError: SF503 when a function's text would be too long; ModelError: SF233 when a number
-        does not fit in double precision, SF229 and SF910 when a function without a short formula has no band
-        form; UsageError: SF902 when ``stem`` cannot be the name of a companion.
+        The error is measured in the model's ``[analysis]`` band, else from 0.1 Hz to 10 kHz, at so many
+        ``samples`` besides those around poles and zeros. Raises SF503 when a function's text would be too
+        long, SF233 when a number does not fit in double precision, SF910 when a function without a short
+        formula has no band form, SF902 when ``stem`` cannot be the name of a companion.
         """
         contents = self.contents(model, tfs, stem, is_alone=is_alone, samples=samples)
         made = self.print(contents)

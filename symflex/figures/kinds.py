@@ -119,9 +119,6 @@ def part_shown(kind: str, given: PlotOptions) -> tuple[tuple[Fraction, Fraction]
     """Return the band [Hz] and the limits of axes that options say.
 
     Raises UsageError: SF902 for what are not limits, and for two of the frequencies of a Bode plot.
-
-    >>> part_shown("bode", PlotOptions(band=("1", "1 kHz"), ylim=("-60 dB", "0")))[0]
-    (Fraction(1, 1), Fraction(1000, 1))
     """
     band, xlim = given.band, given.xlim
     if xlim is not None and kind == "bode":

@@ -74,7 +74,7 @@ BITS, ENOUGH = 192, 64  # precision at the test points, and how many bits of it 
 
 
 def dimensionless_of(tf: AnyTransferFunction) -> InLetters:
-    """Return a transfer function in groups without dimension, its scale, and what these are."""
+    """Return a transfer function in dimensionless groups, its scale, and what these are."""
     try:
         if not tf.is_reduced or tf.is_zero or tf.model.root is not None:
             raise NotInLettersError("it is nested, zero, or has roots of s")

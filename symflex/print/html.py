@@ -71,7 +71,7 @@ MINUS: Final = re.compile(r"(?<![\w.])-(?=[\d.i])|(?<=\de)-(?=\d)")
 
 
 def passages_html(passages: Iterable[Passage]) -> str:
-    """Return what a command says as paragraphs and tables."""
+    """Return the output of a command as paragraphs and tables."""
     parts = []
     for passage in passages:
         outer = min((_indent(line) for line in passage.lines), default=0)

@@ -86,13 +86,7 @@ def label_mathml(name: str, labels: Mapping[str, str]) -> str:
 
 
 def page_signs() -> str:
-    """Return every sign that formulas on a page can need, for a font that has them all.
-
-    Browsers set a letter that stands alone in the italic alphabet of Unicode.
-
-    >>> [sign in page_signs() for sign in "x𝑥ℎω𝜔√′⋅𝒩"]
-    [True, True, True, True, True, True, True, True, True]
-    """
+    """Return every sign that formulas on a page can need, for a font that has them all."""
     ascii_signs = map(chr, range(0x20, 0x7F))
     # The italic h is older than its alphabet, where Unicode left a gap.
     italic = {*map(chr, range(0x1D434, 0x1D468)), "ℎ"} - {"\U0001d455"}

@@ -89,13 +89,7 @@ class PrintedForm:
         )
 
     def at(self, name: str) -> str:
-        """Return what a signal is called where it is a function of another argument than s.
-
-        >>> PrintedForm("polynomial", Name("a"), Name("b")).at("X")
-        'X'
-        >>> PrintedForm("frequency", Name("a"), Name("b"), argument=Name("omega")).at("X")
-        'X(omega)'
-        """
+        """Return what a signal is called, with the argument where that is not s: ``X(omega)``."""
         return name if self.argument == S else f"{name}({format_expression(self.argument)})"
 
 
