@@ -53,7 +53,7 @@ def doubles(re: arb, im: arb) -> Doubles:
     """Round an enclosure.
 
     >>> from flint import arb
-    >>> from symflex.roots import precision
+    >>> from symflex.balls import precision
     >>> with precision(128):
     ...     third = doubles(arb(0), arb(1) / 3)
     >>> third.im == 1 / 3, third.radius == 2**-55, third.is_nearest

@@ -18,6 +18,7 @@ from scipy.signal import lfilter
 
 from symflex import loads
 from symflex.analysis.sampling import sampled_transfer_function
+from symflex.codegen import fmu
 from symflex.codegen.difference import DifferenceEquation, difference_equation
 from symflex.codegen.exporters import SAMPLED
 from symflex.codegen.sampled import DifferenceExporter
@@ -235,6 +236,9 @@ def written(target, tfs, model):
 @pytest.fixture
 def springs(monkeypatch):
     monkeypatch.setattr(DifferenceEquation, "measured", lambda _: ("Rounding costs nothing.", None))
+    monkeypatch.setattr(
+        fmu, "_compiled", lambda _: None
+    )  # compiled units are simulated in integration/test_fmu
     model = hostile.mass_on_springs(("k_1",))
     return model, derive_all(model)
 
