@@ -354,7 +354,9 @@ def shortened(
         else:
             tried.append((kept + 1, tf, exact, whole, first))
     tried.append((0, tf, exact, whole, first))
-    kept, short, printed, (_, _, images, changes), roots = min(tried, key=lambda each: _length(each[2]))
+    kept, short, printed, (_, _, images, changes), roots = min(
+        tried, key=lambda each: length(each[2].num, each[2].den, *dict(each[2].where).values())
+    )
     terms, fewest = (terms_of(short.ratio), terms_of(tf.ratio)), min(terms_of(x.ratio) for _, x, *_ in tried)
     over = f", over the spread by {percent(changes[1])}" if box else ""
     said = [f"{terms[0]} of {terms[1]} terms; coefficients change by at most {percent(changes[0])}{over}"]
@@ -373,9 +375,9 @@ def shortened(
     facts |= {"static": static, "kept_whole": kept} | apart.facts
     said += apart.said
     if box and short is not tf:
-        parts, where = _over_box(tf, box, images, band_of(own, first))
+        bands, where = _over_box(tf, box, images, band_of(own, first))
         said.append(f"magnitude over the spread {where}")
-        facts["within_1_db_over_spread_hz"] = [[*part] for part in parts]
+        facts["within_1_db_over_spread_hz"] = [[*each] for each in bands]
     return short, replace(printed, approximation=Approximation(tuple(said), facts, short is tf))
 
 
@@ -384,10 +386,6 @@ def _first(bound: BoundTransferFunction) -> acb:
     made = bound.enclosed(BITS)
     factors = made.factors if isinstance(made, EnclosedTransferFunction) else ()
     return prod((next(c for c in f.coeffs() if not c.is_zero()) ** n for f, n in factors), start=acb(1))
-
-
-def _length(form: PrintedForm) -> int:
-    return length(form.num, form.den, *dict(form.where).values())
 
 
 def approximation(tf: AnyTransferFunction, given: DeriveOptions) -> tuple[TransferFunction, PrintedForm]:
