@@ -31,6 +31,7 @@ from symflex.model import Model, ModelParameter, with_numbers
 from symflex.model.along import is_tapered
 from symflex.model.loss_factors import check_causal
 from symflex.options import StabilityOptions, gain_ends, share_of
+from symflex.roots.distributed.far_out import VANISHES
 from symflex.transfer import Given
 from symflex.transfer.bind import read_values
 from symflex.transfer.of_model import assemble, derive_all
@@ -176,7 +177,8 @@ def find_intervals(
     # The ends do not belong to the range: there the order may be lower, or a pole meet the axis.
     rims = {*limits}
     inside = [gap for gap in gaps if not rims & {*gap.box[0]}]
-    reasons += dict.fromkeys(box.radius for box in (*inside, *pending) if isinstance(box.radius, str))
+    unknown = [box.radius for box in (*inside, *pending) if isinstance(box.radius, str)]
+    reasons += dict.fromkeys(reason for reason in unknown if reason != VANISHES)
     # Slivers between open parts are left to these.
     slim = Fraction(1, SLIVER)
     parts = [(a, b) for a, b in _joined(decided) if not _is_narrow((a, a + (b - a) * slim), limits, digits)]
@@ -192,7 +194,7 @@ def find_intervals(
             count = None if verdict.right is None else PoleCount(verdict.right, axis)
             reasons += [verdict.reason] if count is None else []
         counted += [(part, count)] if count else []
-    boundaries, intervals = _boundaries(counted, gaps, limits, digits, reasons)
+    boundaries, intervals = _boundaries(function, counted, gaps, limits, digits, reasons)
     stability = StabilityMap(
         parameter.name,
         parameter.unit,
@@ -259,7 +261,12 @@ def _joined(parts: Iterable[Ends], apart: Fraction = Fraction(0)) -> list[Ends]:
 
 
 def _boundaries(
-    counted: Sequence[Interval], gaps: Sequence[OpenBox], limits: Ends, digits: int, reasons: list[str]
+    function: CharacteristicFunction,
+    counted: Sequence[Interval],
+    gaps: Sequence[OpenBox],
+    limits: Ends,
+    digits: int,
+    reasons: list[str],
 ) -> tuple[tuple[Boundary, ...], tuple[GainInterval, ...]]:
     """Return the ends between parts in which poles are counted, and the parts between these."""
     boundaries: list[Boundary] = []
@@ -274,7 +281,14 @@ def _boundaries(
             reasons.append(
                 f"it could not be decided whether poles touch the axis near {float(before[1]):.6g}"
             )
-        boundaries.append(Boundary(place, (Crossing(place, _frequencies(own, digits, is_real=is_real)),)))
+        is_far = any(not gap.is_bounded for gap in own)
+        if is_far:  # a real pole that does not pass the axis at 0 passes it at infinity
+            slopes, every = function.expanded(((before[1], after[0]),)), range(len(function.factors))
+            with precision(BITS):
+                values = slopes.around(acb(0), every)
+            reasons += [VANISHES] * (not is_real or any(value.contains(0) for value, _ in values))
+        omegas = () if is_far else _frequencies(own, digits, is_real=is_real)
+        boundaries.append(Boundary(place, (Crossing(place, omegas, is_infinite=is_far),)))
         starts.append(place)
     ends = [*starts[1:], ball(limits[1]).union(ball(last))]
     intervals = tuple(map(GainInterval, starts, ends, poles)) if poles else ()

@@ -41,6 +41,7 @@ TWO_WAVENUMBERS = "no bound on the poles is known when a part has two wavenumber
 ADVANCED = "a delayed term has the highest power of s, so poles in the right half-plane have no bound"
 NEUTRAL = "delayed terms share the highest power of s and none outweighs the others, so poles have no bound"
 DELAY_LEADS = f"a delayed term outweighs all others of the highest power of s, so {WITHOUT_END}"
+VANISHES = "the highest power of s may vanish, so poles have no bound"
 EVERY_DELAYED = "no bound on the poles is known when every term is delayed"
 NO_LOSS = "waves without enough damping have poles all along the axis"
 
@@ -302,7 +303,7 @@ class _SumFarOut:
         are_delays = all(powers[1][i].is_delay and a > 0 and not b for own in highest for i, a, b in own)
         if are_delays and any(own and 2 * size > total for own, size in sizes.items()):
             return DELAY_LEADS
-        return ADVANCED if delayed > highest[()] else NEUTRAL
+        return ADVANCED if delayed > highest[()] else NEUTRAL if delayed == highest[()] else VANISHES
 
     def powers(self, radius: float) -> tuple[Terms, list[_Power]] | None:
         """Return amplitudes and arguments of the exponentials as powers of s, beyond a radius."""

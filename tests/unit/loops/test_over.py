@@ -83,6 +83,23 @@ def test_a_mass_above_which_a_servo_is_unstable() -> None:
     assert abs(high - b * b * tau / (gain * tau - b)) < 1e-14
 
 
+def test_a_real_pole_passes_through_infinity_where_the_highest_power_vanishes() -> None:
+    """``s (1 - a K) + 1 + K`` has its root at ``(1 + K)/(a K - 1)``; ``s (1 - K) + 1 - K`` keeps it at -1."""
+    model = Model(
+        parameters={"K": {"value": 0.5, "assume": "real"}, "a": {"value": 0.3, "assume": "real"}},
+        signals={"y": "K*(1 - a*s)*(r - y)/(s + 1)"},
+        inputs={"r": {}},
+        outputs={"Y": "y"},
+    )
+    stable = model.stability(over="K", limits=(0, 8))
+    ((low, high),) = stable.stable
+    assert (low, [b.entering for b in stable.boundaries]) == (0, [1])
+    assert abs(high - 1 / 0.3) < 1e-14
+    kept = model.stability(over="K", limits=(-5, 8), a=-1)
+    assert (kept.certified, kept.stable) == (False, ())
+    assert "the highest power of s may vanish, so poles have no bound" in kept.reasons
+
+
 def test_a_pole_that_stays_on_the_axis_is_said() -> None:
     lossless = Model(
         parameters={"m": "1 kg", "k": "4 N/m"},
