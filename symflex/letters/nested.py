@@ -80,7 +80,12 @@ class NestedForm:
             pairs = [
                 (self._polynomial(self.parts, side), self._polynomial(parts, side)) for side in (NUM, DEN)
             ]
-        except (TypeError, ArithmeticError, ModelError):  # over s, or of functions that are not defined there
+        except (
+            KeyError,
+            TypeError,
+            ArithmeticError,
+            ModelError,
+        ):  # j, over s, or a function not defined there
             return inf
         if any(x.degree() != y.degree() for x, y in pairs):
             return inf

@@ -77,6 +77,11 @@ def test_a_short_formula_is_what_an_author_would_write(output, values, expected)
     assert form_text(tf, form) == f"y/u = {expected}"
 
 
+def test_terms_beside_a_complex_coefficient_go():
+    tf, form = shortened(function("u/(s + K + d)", {"K": "a + c*j"}, a=1, c=2, d=0.001), Fraction(1, 100))
+    assert form_text(tf, form) == "y/u = 1/(s + K)\n  where K = a + c*j"
+
+
 VALUES = {"a": 3.0, "b": 0.02, "c": 2.0, "d": 0.01, "e": 0.5}
 OUTPUT = "u*(e*s + a + d)/(a*c*s^2 + (a*d + c*e + b*d)*s + a - b*c^2 + d*e)"
 
