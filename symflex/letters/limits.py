@@ -401,9 +401,8 @@ class LimitFinder:
     def _powers(self, value: Factored) -> Powers:
         """Return a function without kernels, as it prints shortest, as powers; its sign is one of -1."""
         kept = Ring(tuple(n for n in self._ring.names if n not in self.tf.kernels.generators))
-        plain = replace(
-            self.tf, reduced=value.over(kept), closed=None, hidden=(), kernels=NO_KERNELS, parts=None
-        )
+        plain = replace(self.tf, reduced=value.over(kept), closed=None, hidden=(), parts=None, solve=None)
+        plain = replace(plain, kernels=NO_KERNELS)
         form = print_form(plain)
         front, powers = powers_of(e.quotient(form.num, form.den))
         found = {base: Fraction(n) for base, n in powers.items()}

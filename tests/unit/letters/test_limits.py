@@ -112,6 +112,12 @@ CASES = {
         "1",
         "1/sqrt(tau*s)",
     ),
+    "definitions in each other": (
+        SIGNALS + 'y = "u*h/(c*s^2 + s + J)"\n[outputs]\nout = "y"\n'
+        '[definitions]\nh = "c/2"\nJ = "c*h^2/(h^2 + m/M) + 2"',
+        "c*(c**2 + 4*m/M)/(2*(c**3 + 2*c**2 + 8*m/M))",
+        "1/(2*s**2)",
+    ),
     "differences of letters": (
         SIGNALS + 'y = "u*(T - tau)*s/((T*s + 1)*(tau*s + 1))"\n[outputs]\nout = "y"',
         "(T - tau)*s",
