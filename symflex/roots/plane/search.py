@@ -56,7 +56,7 @@ class RootSearch:
         self.excluded: set[Cell] = set()
         self.roots: list[Root] = []
         self.missing = 0
-        self.reached = -inf
+        self.reached = self._innermost = -inf
         self._winding = winding
 
     @property
@@ -71,7 +71,7 @@ class RootSearch:
     def extend(self, modes: int, radius: float = -inf) -> None:
         """Search outwards for enough modes, at least to ln of a radius; what was found stays."""
         if self.reached == -inf:
-            self.reached = self.smallest()
+            self.reached = self._innermost = self.smallest()
         while self.reached < radius or (known := count_modes(self.roots)) < modes:
             if self.reached > HIGHEST:
                 # Kernels that do not depend on s: there are no more roots.
@@ -105,10 +105,14 @@ class RootSearch:
         return Found((), 1)
 
     def _ring(self, low: float, high: float) -> tuple[float, Found]:
-        """Return the roots in a whole ring, whose outer radius may move to pass between roots."""
+        """Return the roots in a whole ring, whose outer radius may move to pass between roots.
+
+        So may the innermost radius, inwards: the first root may lie on its circle.
+        """
         for nudge in NUDGES:
+            inner = low - nudge * (low == self._innermost)
             try:
-                searched = self._search(Cell(low, high + nudge, -MARGIN, self.left + MARGIN))
+                searched = self._search(Cell(inner, high + nudge, -MARGIN, self.left + MARGIN))
             except RootOnPathError:
                 continue
             return high + nudge, searched

@@ -2,9 +2,11 @@
 
 from fractions import Fraction
 
+import mpmath
 import pytest
 from flint import arb
 
+import symflex
 from symflex.roots import (
     Band,
     Everything,
@@ -140,3 +142,15 @@ def test_impossible_regions_are_refused():
     ]:
         with pytest.raises(ValueError, match=message):
             make()
+
+
+@pytest.mark.parametrize("T", ["1e-8", "1e-12"])
+def test_the_first_root_may_lie_on_the_circle_that_a_search_begins_with(T):
+    """The root of ``s + 2 exp(-s T)`` is ``W(-2 T)/T``, next to -2; searches begin at powers of 2."""
+    model = symflex.loads(
+        f'symflex = 1\nparameters.T = "{T} s"\ninputs.u = {{}}\noutputs.y = "u/(s + 2*exp(-s*T))"\n'
+    )
+    (pole,) = model.transfer_function("y", "u").bind().poles(modes=1)
+    assert pole.im == 0
+    with mpmath.workdps(40):
+        assert abs(pole.re - mpmath.lambertw(-2 * mpmath.mpf(T)).real / mpmath.mpf(T)) < 1e-12
