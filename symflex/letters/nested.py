@@ -5,8 +5,7 @@ Output: the numerator, the denominator and the lines without more and more terms
 
     1/(M s^2 + k), M = m + m_n   with m_n = m/200 and 1 %   ->   1/(M s^2 + k), M = m
 
-Numerator and denominator are polynomials of s in balls, with the lines put in; terms go in the order of the
-changes that each makes alone.
+Both are polynomials of s in balls, with the lines put in; what changes least by itself goes first.
 """
 
 from __future__ import annotations
@@ -80,12 +79,7 @@ class NestedForm:
             pairs = [
                 (self._polynomial(self.parts, side), self._polynomial(parts, side)) for side in (NUM, DEN)
             ]
-        except (
-            KeyError,
-            TypeError,
-            ArithmeticError,
-            ModelError,
-        ):  # j, over s, or a function not defined there
+        except (KeyError, TypeError, ArithmeticError, ModelError):  # with j, over s, or not defined there
             return inf
         if any(x.degree() != y.degree() for x, y in pairs):
             return inf

@@ -242,8 +242,7 @@ def _by_print(
     """Yield prints without terms of sums, also those in lines below, one more term kept each time."""
     values = {n: letters.values[i] for n, i in tf.ratio.ring.index.items() if i in letters.values}
     nested = NestedForm(form, tf.ratio.ring, values)
-    is_large = has_box and terms_of(tf.ratio) > MOST_NESTED
-    if not tf.is_rational or tf.model.root is not None or is_large:
+    if not tf.is_rational or tf.model.root is not None or (has_box and terms_of(tf.ratio) > MOST_NESTED):
         return
 
     def images(parts: Parts) -> list[Image]:
