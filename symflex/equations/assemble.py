@@ -64,6 +64,7 @@ from symflex.library.elements.element import Role
 from symflex.library.elements.line import LineElement
 from symflex.model import Model, NetworkNode, NodeReference, PlacedBlock, PlacedElement, scope_of
 from symflex.model.along import COORDINATE, is_tapered, varies_along_x
+from symflex.model.boundary import varying_constants
 from symflex.model.model import INPUT_KINDS
 from symflex.model.network import variable_of
 
@@ -204,6 +205,7 @@ class _Assembly:
     # Per line element or field, the points within at which it is cut.
     cuts: dict[str, list[Cut]] = field(default_factory=dict)
     poles: dict[str, Factored] = field(default_factory=dict)  # of blocks, before anything cancels
+    filters: tuple[str, ...] = ()  # definitions that divide by what depends on s
 
     def survey(self, *, is_nameless: bool, is_cut: bool, is_followed: bool) -> Distributed | None:
         """Return the model's distributed parts; this assembly is over the ring without kernels."""
@@ -236,6 +238,10 @@ class _Assembly:
     def _radicals(self) -> Radicals:
         return radicals_of(self.ring, self.constants, self.model.parameters)
 
+    @cached_property
+    def _varying(self) -> frozenset[str]:
+        return varying_constants(self.model.definitions, self.model.blocks)
+
     def _evaluator(self, blocks: Mapping[str, Factored]) -> tuple[ExactEvaluator, dict[str, int]]:
         definitions = {d.name: d.expression for d in self.model.definitions}
         prime, point = self._radicals.point() or (PRIME, random_point(self.ring.names))
@@ -244,7 +250,7 @@ class _Assembly:
         fields = {*scope.unknowns, *scope.along}
         value = None if self.distributed is None else self._at_point
         own = self.ring, scope, blocks, self.through, definitions, point, prime, fields, self._radicals, value
-        return ExactEvaluator(*own, root=self.model.root), point
+        return ExactEvaluator(*own, root=self.model.root, varying=self._varying), point
 
     def _at_point(self, call: Call) -> LinearForm:
         """Return the value at a point along x that a call names."""
@@ -293,6 +299,7 @@ class _Assembly:
         blocks = self._blocks()
         evaluator, point = self._evaluator(blocks)
         definitions = self._define(evaluator, point)
+        self.filters = self._dividing(evaluator)
         self._check_blocks(blocks, point, evaluator.prime)
         nodes = {n.name: n for n in self.model.nodes}
         for node in self.model.nodes:
@@ -418,10 +425,18 @@ class _Assembly:
         scope = scope_of(self.model)
         definitions = {d.name: d.expression for d in self.model.definitions}
         evaluator = ExactEvaluator(
-            self.ring, scope, transfers, {}, definitions, radicals=self._radicals, root=self.model.root
+            self.ring,
+            scope,
+            transfers,
+            {},
+            definitions,
+            radicals=self._radicals,
+            root=self.model.root,
+            varying=self._varying,
         )
-        s = evaluator.s
-        for block in self._ordered_blocks():
+        s, self.filters = evaluator.s, self._dividing(evaluator)
+        for closed in self._ordered_blocks():
+            block = replace(closed, values=tuple((n, self._with_open_filters(e)) for n, e in closed.values))
             if block.name in transfers:
                 continue
             if self.distributed is None and block.name in self._delayed:
@@ -605,6 +620,7 @@ class _Assembly:
             role, given = "equation", ()
             expression = Sum((expression.left, Negative(expression.right)), span=expression.span)
         try:
+            expression = self._with_open_filters(expression)
             form = evaluator.linear(expression)
         except SymflexError as error:
             self.problems.extend(error.diagnostics)
@@ -615,6 +631,7 @@ class _Assembly:
 
     def _output(self, name: str, expression: Expression, evaluator: ExactEvaluator) -> OutputRow | None:
         try:
+            expression = self._with_open_filters(expression)
             form = evaluator.linear(expression)
         except SymflexError as error:
             self.problems.extend(error.diagnostics)
@@ -623,6 +640,26 @@ class _Assembly:
         below = common_denominator(self.ring, form.coefficients)
         divisor = below * self._cancelled(expression, form, evaluator)
         return OutputRow(name, form * divisor, divisor)
+
+    def _dividing(self, evaluator: ExactEvaluator) -> tuple[str, ...]:
+        """Return the definitions that divide by what depends on s."""
+        filters = list[str]()
+        varying = [n for n in (LAPLACE, *self._varying) if n in self.ring.index]
+        for definition in (d for d in self.model.definitions if d.name in self._varying):
+            try:
+                value = evaluator.constant(definition.expression)
+            except (SymflexError, ZeroDivisionError, KeyError):
+                continue  # what is wrong is reported where it stands
+            if any(map(value.denominator().depends_on, varying)) or any(map(value.depends_on, filters)):
+                filters.append(definition.name)
+        return tuple(filters)
+
+    def _with_open_filters(self, expression: Expression) -> Expression:
+        """Return an expression in which no pole of a definition can cancel unseen."""
+        for definition in reversed(self.model.definitions):
+            if definition.name in self.filters:
+                expression = substitute(expression, {definition.name: definition.expression})
+        return expression
 
     def _cancelled(self, expression: Expression, form: LinearForm, evaluator: ExactEvaluator) -> Factored:
         """Return the poles that cancelled within an expression: they stay modes of the model."""

@@ -88,6 +88,7 @@ class ExactEvaluator:
     states: dict[Expression, LinearForm] = field(default_factory=dict, repr=False)
     root: RootOfS | None = None  # where the ring's s stands for a root of s
     is_constant: bool = False  # where only constants may stand, a parameter may share its name with a node
+    varying: Collection[str] = ()  # definitions that depend on s
 
     @cached_property
     def s(self) -> Factored:
@@ -389,19 +390,19 @@ def written_denominator(
         case Product(factors):
             return prod((written_denominator(factor, evaluator, poles) for factor in factors), start=one)
         case Quotient(numerator, denominator):
-            below = _in_s(evaluator.constant(denominator).numerator())
+            below = _in_s(evaluator.constant(denominator).numerator(), evaluator.varying)
             return written_denominator(numerator, evaluator, poles) * below
         case Power(base, exponent):
             n = int(evaluator.constant(exponent).unit)
             if n >= 0:
                 return written_denominator(base, evaluator, poles) ** n
-            return _in_s(evaluator.constant(base).numerator()) ** -n
+            return _in_s(evaluator.constant(base).numerator(), evaluator.varying) ** -n
         case Sum(terms):
             return least_common_multiple(one, (written_denominator(t, evaluator, poles) for t in terms))
     return one
 
 
-def _in_s(value: Factored) -> Factored:
-    """Return the factors that contain s."""
-    s = value.ring.index[LAPLACE]
-    return value.filter(lambda factor: bool(degree_in(factor, s)))
+def _in_s(value: Factored, varying: Collection[str] = ()) -> Factored:
+    """Return the factors that contain s, or a definition that does."""
+    places = [value.ring.index[name] for name in (LAPLACE, *varying) if name in value.ring.index]
+    return value.filter(lambda factor: any(degree_in(factor, place) for place in places))

@@ -10,9 +10,10 @@ B = { type = "tf", num = "s + 2", den = "s + 3" }
 """
 
 
-def hidden(output="y", signals="", expression="y", blocks=""):
+def hidden(output="y", signals="", expression="y", blocks="", definitions=None):
+    own = f"[definitions]\n{definitions}" if definitions else f"[blocks]{BLOCKS}"
     text = f"""symflex = 1
-[blocks]{BLOCKS}{blocks}
+{own}{blocks}
 [signals]
 {signals}
 [inputs]
@@ -36,6 +37,27 @@ def test_an_unstable_pole_cancelled_in_a_loop_is_hidden_however_the_loop_is_writ
         tf, found = hidden(signals=signals)
         assert tf.order == (0, 1), signals
         assert ("s - 1", 1) in found, signals
+
+
+def test_poles_of_definitions_cancel_no_less_than_those_of_blocks():
+    for definitions, signals, expression in [
+        ('C = "(s - 1)/(s + 1)"\nP = "1/(s - 1)"', 'y = "C*P*(r - y)"', "y"),
+        ('C = "(s - 1)/(s + 1)"\nP = "1/(s - 1)"', 'u = "C*(r - y)"\ny = "P*u"', "y"),
+        ('C = "(s - 1)/(s + 1)"\nP = "1/(s - 1)"\nL = "C*P"', 'y = "L*(r - y)"', "y"),
+        ('D = "s - 1"\nP = "1/D"\nC = "D/(s + 1)"', 'y = "(r - y)*P*C"', "y"),
+        ('D = "s - 1"', 'y = "D/(s + 1)*(r - y)/D"', "y"),
+        ('C = "(s - 1)/(s + 1)"\nP = "1/(s - 1)"', 'y = "r/(s + 2)"', "P*C*y"),
+    ]:
+        tf, found = hidden(signals=signals, expression=expression, definitions=definitions)
+        assert ("s - 1", 1) in found, (definitions, signals)
+    tf, found = hidden(
+        signals='y = "Q*r"',
+        definitions='P = "1/(s - 1)"',
+        blocks='\n[blocks]\nQ = { type = "tf", num = "(s - 1)*P", den = "s + 1" }',
+    )
+    assert (tf.order, found) == ((0, 1), [("s - 1", 1)])
+    tf, found = hidden(signals='y = "Y*r"', definitions='Z = "s + 4"\nY = "1/Z"')
+    assert (tf.order, found) == ((0, 1), [])
 
 
 def test_a_pole_cancelled_between_two_blocks_of_one_product_is_hidden():
