@@ -52,7 +52,7 @@ INVISIBLE_TIMES: Final = "<mo>&#x2062;</mo>"
 SPACED_TIMES: Final = '<mo lspace="0.17em" rspace="0">&#x2062;</mo>'
 DOT: Final = '<mo lspace="0" rspace="0.25em">⋅</mo>'  # after the blank at which a line may end
 APPLY_FUNCTION: Final = "<mo>&#x2061;</mo>"
-EQUALS: Final = "<mo>=</mo>"
+EQUALS: Final = '<mo rspace="0">=</mo>'  # a blank follows, at which the line may end
 
 
 def fence(content: str, nesting: int, is_tall: bool) -> str:
