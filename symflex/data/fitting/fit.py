@@ -45,24 +45,20 @@ WEAK_ROUNDED, MOST_ROUNDED = 0.2, 0.25
 """The same, and the share of the noise, where numbers of few digits make it: steps look like resonances."""
 LARGE = 2.0  # sum of squares per degree of freedom from which coherence does not explain the residual
 MEDIAN = 1.177  # median of the size of a complex Gaussian error whose parts have the deviation 1
-DECADE = 10.0
-"""Frequency over that of an end of the band, or the other way round, from which a pole is far outside."""
+DECADE = 10.0  # frequency over that of a band's end, or the reverse, from which a pole is far outside
 CLEAN, UNLIKE, MOST_AVERAGES, FEWEST_JUDGED = 0.99, 0.5, 500, 112
 """Median coherence from which its digits decide, loss of likelihood a line from which it is false, averages
 that there may be where data do not say, lines that 14 pairs of poles leave enough scatter to judge it by."""
-WILD = 6.5
-"""Standard deviations of each part beyond which a line is wild; noise reaches that once in 10^9 lines."""
+WILD = 6.5  # deviations of each part beyond which a line is wild; noise reaches that once in 10^9 lines
 NAMED_LINES = 6  # wild lines whose frequencies are listed
 ROUNDS = 3  # rounds in which lines are left out or taken back; they end earlier when nothing changes
-MOST_LINES, FEWEST_OF_EACH = 1000, 300
-"""On which numbers of poles are compared: of all responses together, and of each at least."""
+MOST_LINES, FEWEST_OF_EACH = 1000, 300  # lines on which numbers of poles are compared, and of each response
 DROWNED = 0.5  # deviation of each part over the magnitude from which a line shows noise
 DROWNED_DB = 6.0  # misfit of a fit without poles from which noise is as large as the response
 OVERDAMPED = 2.0  # damping ratio of a pair of zeros that had better be called two real ones
 LEAST_DAMPING = 0.05  # damping ratios of zeros below this are not held against their own error
 DEFAULTS = FitOptions()
-SMOOTH = 3.0
-"""A Hann window makes this 2, see :attr:`symflex.data.fitting.least_squares.Refined.correlation`."""
+SMOOTH = 3.0  # a Hann window makes this 2, see :attr:`symflex.data.fitting.least_squares.Refined.correlation`
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,25 +199,10 @@ class ResonanceFit:
 def fit_resonances(
     measured: Sequence[MeasuredResponse], bases: Sequence[Base] | None = None, given: FitOptions = DEFAULTS
 ) -> ResonanceFit:
-    """Fit simple resonances, in cascade with a known base, to responses that share their poles.
-
-    Each response has its base; without any, it is a gain times a power of s, the same for all. Of the
-    options, ``slope`` is that power, ``start`` a key of :data:`symflex.data.fitting.order.STARTS` or ``auto``
-    for the best of all; ``is_gain_free`` holds anyway without bases.
-
-    The best fit is returned in any case; ``poor`` says why it is no good one. Pole pairs outside the band and
-    real poles are residual terms, not resonances. Outliers are left out.
-
-    >>> from symflex.data.fitting.resonances import Resonances
-    >>> from symflex.data.measurement import MeasuredResponse
-    >>> frequency = np.arange(5.0, 20.0, 0.05)
-    >>> omega = 2 * np.pi * frequency
-    >>> data = 3.0 * Resonances.of([(62.8, 0.02, 75.4, 0.03)]).factor(0, omega)
-    >>> asked = FitOptions(modes=1)
-    >>> fit = fit_resonances([MeasuredResponse("y/u", frequency, data)], None, asked)
-    >>> print(fit.resonances.omega_p.round(6), fit.resonances.zeta_p.round(6), fit.resonances.gain.round(6))
-    [62.8] [0.02] [3.]
-    """
+    """Fit simple resonances, in cascade with known bases, to responses that share their poles."""
+    # Without bases, each is a gain times a power of s, the same for all: ``slope``. ``start`` is a key of
+    # :data:`symflex.data.fitting.order.STARTS`, or ``auto`` for the best of all. Pole pairs outside the band
+    # and real poles are residual terms, not resonances. Outliers are left out.
     choices = ((given.start, ("auto", *STARTS), "start"), (given.criterion, CRITERIA, "criterion"))
     for name, allowed, what in choices:
         if name not in allowed:
@@ -301,12 +282,9 @@ def _fit(
 
 
 def _without_false_coherence(problem: FitProblem, most: int) -> tuple[FitProblem, list[str]]:
-    """Return the problem without coherence that the scatter of lines contradicts, and what is said of it.
-
-    The variance v of each line that coherence gives is compared with that estimated without it, w. Of
-    Gaussian errors with the variance w the likelihood of v is lower by w/v - 1 - ln(w/v) a line; how many
-    averages there are need not be known.
-    """
+    """Return the problem without coherence that the scatter of lines contradicts, and what is said of it."""
+    # For Gaussian errors of variance w, estimated without coherence, the likelihood of the variance v that
+    # coherence gives is lower by w/v - 1 - ln(w/v) a line, however many averages there are.
     lines, said = list(problem.lines), []
     for r, line in enumerate(problem.lines):
         shares = line.measured.coherence

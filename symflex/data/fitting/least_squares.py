@@ -38,26 +38,17 @@ from symflex.data.fitting.resonances import Complex, Real, Resonances, Values, W
 STEPS = 100  # evaluations of each residual; a search that takes more has lost its way
 TOLERANCE = 1e-9  # relative, of parameters and cost: far below any standard error, far above rounding
 ROUGH = 1e-5  # the same of a search that another one follows: a thousandth of what tells two fits apart
-CAP = 0.05
-"""Added to the deviation in the logarithmic residual, so that no single line pulls a poor start astray."""
+CAP = 0.05  # added to the deviation in the logarithmic residual: no line alone pulls a poor start astray
 LARGEST_LAG = 3  # lines apart: one more than a Hann window correlates
 HANN_SHARES = (4 / 9, 1 / 36, 0.0)
-"""Correlation of noise on lines 1, 2 and 3 apart, seen through a Hann window.
-
-They are the squares of 2/3, 1/6 and 0, the correlations of its spectrum -1/4, 1/2, -1/4 with itself.
-"""
+"""Correlation of noise 1, 2 and 3 lines apart: squares of 2/3, 1/6, 0, of a Hann spectrum -1/4, 1/2, -1/4."""
 SINGULAR = 1e-12  # reciprocal condition number below which the inverse in doubles has four digits at most
 FLAT = 0.25  # damping ratio of a pair of zeros from which no sharp trough shows where it lies
-NEXT_TERM = 0.5
-"""Deviation of further terms of what lies outside the band, over those of the zeros there, at its end."""
-NULL_PART = 1e-3
-"""Share of a parameter in a direction that the lines do not determine from which its error is infinite."""
-FIRST_DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-12, 1e9
-"""Marquardt's factor: at first, at least, and where a search gives up."""
-EASIER, HARDER = 0.2, 6.0
-"""What it is multiplied by after a step that lowers the cost, and after one that does not."""
-EDGE = 12.0
-"""Logarithms of parameters are kept within this of their start, so that nothing overflows on the way."""
+NEXT_TERM = 0.5  # deviation of further terms of what lies outside the band, over those of zeros, at its end
+NULL_PART = 1e-3  # share of a parameter in an undetermined direction from which its error is infinite
+FIRST_DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-12, 1e9  # Marquardt: first, least, giving up
+EASIER, HARDER = 0.2, 6.0  # factors of the damping after a step that lowers the cost, and after another
+EDGE = 12.0  # logarithms of parameters stay within this of their start, so that nothing overflows
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,10 +133,8 @@ def search(
     steps: int,
     tolerance: float = TOLERANCE,
 ) -> tuple[Real, bool]:
-    """Return a minimum of a sum of squares within limits, and whether the search ended before its steps did.
-
-    ``reduced`` returns matrix and right side of the linear equations of a step, of any height.
-    """
+    """Return a minimum of a sum of squares within limits, and whether it was reached within the steps."""
+    # ``reduced`` returns matrix and right side of the linear equations of a step, of any height.
     low, high = limits
     scale = np.zeros(x.size)
     damping = FIRST_DAMPING
@@ -323,10 +312,8 @@ def widened(problem: FitProblem, refined: Refined) -> Refined:
 
 
 def _ends(line: FittedLines, modes: Resonances, values: Complex) -> Complex:
-    """Return what a step that is cut off adds to lines, a column each, with its deviation.
-
-    Noise of its last sample is all of the lowest line. A mode that rings on has ``r (1 - exp(p T))`` for r.
-    """
+    """Return what a step that is cut off adds to lines, a column each, with its deviation."""
+    # Noise of its last sample is all of the lowest line. A mode that rings on has ``r (1 - exp(p T))`` for r.
     s, w, zeta = 1j * line.omega, modes.omega_p[:, None], modes.zeta_p[:, None]
     peak = np.interp(w, line.omega, np.abs(values)) * np.sqrt(2) * zeta
     shape = peak * np.exp(-zeta * w * (line.measured.cut_off_s or 0)) / (1 + 2 * zeta * s / w + (s / w) ** 2)
@@ -373,17 +360,12 @@ def _correlation(residuals: list[Values], power: float) -> list[tuple[float, int
 
 
 def _covariance(sums: _Sums, shares: list[tuple[float, int]]) -> tuple[Real | None, float]:
-    """Return the covariance of the parameters, and the factor of correlation.
-
-    The first is ``None`` if it is no number. Parameters that the lines do not determine have infinite
-    variance.
-
-    Windows and overlapping records correlate neighbouring lines, so that the inverse of J'J alone would
-    promise too much. The correlation up to :data:`LARGEST_LAG` lines is estimated from the residuals, and
-    enters between two such inverses (White 1980; Newey & West 1987). Where the window is known for all
-    responses, the covariance of J'e that follows from it stands there, with as much of that correlation as a
-    window does not bring: what a model lacks is not noise. The scale is that of the residuals.
-    """
+    """Return the covariance of the parameters, ``None`` if it is no number, and the factor of correlation."""
+    # Parameters that the lines do not determine have infinite variance. Windows and overlapping records
+    # correlate lines: the correlation of residuals up to :data:`LARGEST_LAG` lines apart enters between two
+    # inverses of J'J (White 1980; Newey & West 1987). Where the window is known for all responses, its
+    # covariance of J'e stands there, with as much of that correlation as no window brings. The scale is that
+    # of the residuals.
     count = sums.normal.shape[0]
     if not count:
         return np.zeros((0, 0)), 1.0

@@ -22,15 +22,11 @@ FEWEST = 12  # lines from which wild ones are looked for
 REACH = 4  # lines on either side that one is compared with
 WILD = 8.0  # how many times as far as the worst of those a wild line deviates
 MOST_WILD = 0.02  # share of the lines that may be wild: if more are, the model lacks something
-LEAST_OFF = 0.1
-"""Deviation of the logarithm below which a line cannot hide a resonance and is left to the fit."""
-NARROW = 0.1
-"""Bandwidth of a resonance, over twice the distance of lines, below which one line alone shows its peak."""
+LEAST_OFF = 0.1  # deviation of the logarithm below which a line cannot hide a resonance: the fit judges it
+NARROW = 0.1  # bandwidth, over twice the distance of lines, below which one line alone shows a peak
 MOST_DIGITS = 7  # numbers with so many digits, or fewer, count as rounded
-EXACT, SMALLEST = 1e-9, 1e-13
-"""Relative and absolute deviation from a rounded number that a conversion of its unit leaves."""
-STEP_REACH, STEP = 8, 6.5
-"""Lines on either side of a step of the gain, and how many of their deviations it is at least."""
+EXACT, SMALLEST = 1e-9, 1e-13  # relative and absolute deviation that conversion leaves from a rounded number
+STEP_REACH, STEP = 8, 6.5  # lines on either side of a step of the gain, and its least size in deviations
 FIRST_SHARE = 4  # part of the lines of a thinner grid, its inverse, that is spread evenly
 CAP = 0.05  # added to the deviation, so that a grid does not follow what a start does not need
 
@@ -77,13 +73,7 @@ def wild_lines(omega: Real, values: Complex) -> Whole:
 
 
 def step_line(omega: Real, values: Complex) -> int | None:
-    """Return the line after which all others are larger or smaller by a factor; None if there is none.
-
-    >>> omega = np.arange(60.0)
-    >>> values = 1 / (1 + 0.01j * omega)
-    >>> step_line(omega, np.where(omega > 30, 1.05, 1) * values), step_line(omega, values)
-    (30, None)
-    """
+    """Return the line after which all others are larger or smaller by a factor; None if there is none."""
     ratios = np.log(values[1:] / values[:-1]) / np.diff(omega)
     if ratios.size < 2 * STEP_REACH + 1:
         return None

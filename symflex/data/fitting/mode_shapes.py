@@ -30,15 +30,13 @@ STEP = 1e-6  # of the logarithms by which derivatives are taken
 KINDS = {(Fraction(-1), Fraction(0)): "kg^(-1/2)", (Fraction(-1), Fraction(-2)): "kg^(-1/2)*m^(-1)"}
 """Units of mode shapes by the exponents of kg and m in a motion over a force, and over a torque."""
 
-MOST_MOVED, MOST_DAMPED = 0.1, 2.0
-"""How far all responses may move the logarithm of a frequency, and of a damping ratio."""
+MOST_MOVED, MOST_DAMPED = 0.1, 2.0  # how far responses may move the logarithm of frequency and damping
 WEAK = 0.5  # standard error of a damping ratio over its value from which a resonance has no mode shape
 RIGHT_ANGLE = 90.0
 MOST_STEPS = 200
 SINGULAR = 1e13  # condition of the normal equations from which a covariance means nothing
 
-MOST_TURNED = 45.0
-"""Degrees off the positive real axis beyond which a value at the driven point is not a modal constant."""
+MOST_TURNED = 45.0  # no driven point's modal constant is so many degrees off the positive real axis
 
 
 @dataclass(frozen=True, eq=False)

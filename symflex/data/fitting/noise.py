@@ -23,8 +23,7 @@ from symflex.data.fitting.starts import generous_fit
 
 STEPS = 60  # multiplicative steps for the shares of the variance; none of them makes it worse
 POWERS = (0, 2, 4, -2, -4)  # powers of the frequency that describe the variance of the noise
-LEAST = 1e-9
-"""Relative deviation below which no line is taken to be known: a thousandth of it is rounding on the way."""
+LEAST = 1e-9  # relative deviation below which no line is taken to be known: rounding on the way is 1e-12
 MOST_PAIRS = 14  # most pairs of poles of the function without structure, if the number of resonances is open
 LINES_PER_PARAMETER = 2.0  # real values that each parameter of that function takes at least
 PATIENCE = 2  # numbers of pairs tried after the best one
@@ -34,11 +33,8 @@ LARGEST = 20.0  # power of an error, over what is expected of it, beyond which i
 
 
 def with_rough_noise(problem: FitProblem) -> FitProblem:
-    """Return the problem with deviations guessed from how lines differ from their neighbours' line.
-
-    Curvature of peaks is taken for noise too, so that these only weigh less than they might; lines that noise
-    drowns no longer weigh as if they were exact.
-    """
+    """Return the problem with deviations guessed from how lines differ from their neighbours' line."""
+    # Curvature of peaks is taken for noise too: these only weigh less than they might.
     lines = []
     for line in problem.lines:
         if line.deviation is not None or line.omega.size < FEWEST:
@@ -103,10 +99,8 @@ def estimated(problem: FitProblem, values: list[Complex], parameters: int) -> Fi
 
 
 def rounding(line: FittedLines, model: Complex) -> Real:
-    """Return the variance of each part that rounded frequencies, and rounded values, have at most.
-
-    Frequencies may be rounded in Hz or in rad/s, values in any of the ways in which files write them.
-    """
+    """Return the variance of each part that rounded frequencies, and rounded values, have at most."""
+    # Frequencies may be rounded in Hz or in rad/s, values in any of the ways in which files write them.
     omega, values = line.omega, line.measured.values
     size, turn = np.abs(values), np.angle(values)
     written = (

@@ -17,15 +17,12 @@ from symflex.data.fitting.problem import FitProblem
 from symflex.data.fitting.resonances import Complex, Real, Resonances
 from symflex.data.fitting.starts import solved_real
 
-TURNS, PER_TURN = 2.5, 8
-"""Delays tried on either side of that of the poles, in turns of the phase at the highest line."""
+TURNS, PER_TURN = 2.5, 8  # delays tried on either side of that of the poles, in turns at the highest line
 MOST_LINES = 400
 MOST_POLISHED = 12
 POLISHED = 4
-STRANGE, MOST_DAMPED = 10.0, 2.0
-"""What a BIC has to gain by a pair of zeros that is hardly one, and the damping ratio from which it is."""
-FAR_OUTSIDE = 30.0
-"""Frequency over the end of the band beyond which a pole bends nothing inside that a gain cannot."""
+STRANGE, MOST_DAMPED = 10.0, 2.0  # BIC to gain by a pair of zeros that is hardly one; its least damping ratio
+FAR_OUTSIDE = 30.0  # frequency over the end of the band beyond which a pole bends nothing that a gain cannot
 REAL = 1e-9  # of a zero's magnitude: the imaginary part from which a zero is one of a pair
 
 
@@ -43,11 +40,9 @@ class Numerator:
 
 
 def strange(omega_z: Real, zeta_z: Real, real_z: Real, low: float, high: float) -> int:
-    """Return how many zeros, or pairs of them, are hardly those of a structure seen in this band.
-
-    They lie outside it, or are two real ones of the same sign: such zeros make up for noise and for a wrong
-    power of s. A real one far outside counts twice: it is a power of s, or a gain, and rounded numbers.
-    """
+    """Return how many zeros, or pairs of them, are hardly those of a structure seen in this band."""
+    # They lie outside it, or are two real ones of the same sign: such zeros make up for noise and for a wrong
+    # power of s. A real one far outside counts twice: it is a power of s, or a gain, and rounded numbers.
     place = np.abs(omega_z)
     outside = np.isfinite(place) & ((place < low) | (place > high))
     pairs = outside | (np.isfinite(place) & (np.abs(zeta_z) > MOST_DAMPED))

@@ -116,20 +116,15 @@ def seen_amplitudes() -> Real:
 
 
 LARGEST_LAG = 4
-OVERLAPPING = (0, 1, -1)
-"""Records that share samples with one, in half records: a Hann window goes with half an overlap."""
+OVERLAPPING = (0, 1, -1)  # records that share samples, in half records: Hann windows overlap by half
 
 
 def score_covariance(line: FittedLines, inside: Complex, slopes: Complex) -> Real | None:
-    """Return the covariance of J'e for the lines of one response, in units of their variance.
-
-    It is J'J where lines are independent and their errors circular, and ``None`` without a Hann window.
-    ``inside`` is the response at ``line.observation.omega``, ``slopes`` (n, p) is J: derivatives on the lines
-    over the standard deviation of each part.
-
-    The noise is what coherence says less the leakage that the response implies. Records are taken to overlap
-    by half; how many there are follows from the number of independent averages (Welch 1967).
-    """
+    """Return the covariance of J'e for one response, over the variance of lines; None without a window."""
+    # It is J'J where lines are independent and their errors circular. ``inside`` is the response at
+    # ``line.observation.omega``, ``slopes`` (n, p) is J: derivatives over the standard deviation of each
+    # part. The noise is what coherence says less the leakage that the response implies. Records are taken to
+    # overlap by half; how many there are follows from the number of independent averages (Welch 1967).
     seen = line.observation.around(inside)
     if seen is None or line.deviation is None:
         return None

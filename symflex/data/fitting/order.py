@@ -39,35 +39,26 @@ Result = TypeVar("Result")
 CRITERIA = ("bic", "aicc")
 MOST_MODES = 12  # beyond, ask for a number: each one tried costs a fit from up to three kinds of starts
 EXTRA = 5  # poles beyond those of the resonances that are asked for: modes outside the band, and real ones
-PATIENCE, MORE_PATIENCE = 1, 3
-"""Numbers of pairs tried after the best: where the noise is nearly reached, and where it is far."""
+PATIENCE, MORE_PATIENCE = 1, 3  # pairs tried after the best: near the noise, and far from it
 NOISE_SHARE, TRIED_SHARE, THOROUGH_SHARE, LAST_SHARE, PHASE_SHARE = 0.15, 0.6, 0.7, 0.85, 0.92
 """Parts of the time given when the noise has to be known, numbers of poles compared, the fit found, fitted to
 all lines, and its phase tested."""
-THOROUGH, QUICK = (STEPS, TOLERANCE), (25, ROUGH)
-"""Steps and tolerance of a whole search, and of one that is enough to compare numbers of poles."""
-EXPLAINED = 1.15
-"""Sum of squares per degree of freedom up to which noise explains what is left; 1 is expected."""
+THOROUGH, QUICK = (STEPS, TOLERANCE), (25, ROUGH)  # steps and tolerance of a whole search and a comparison
+EXPLAINED = 1.15  # sum of squares per degree of freedom up to which noise explains the rest; 1 is expected
 WEAK = 0.5  # standard error of ln zeta beyond which fewer resonances are preferred, unless that is far worse
-FAR_BETTER = 4.0
-"""Ratio of sums of squares at which a failed fit is said rather than replaced, and a weak one kept."""
+FAR_BETTER = 4.0  # ratio of sums of squares at which a failed fit is said, not replaced, and a weak one kept
 FAR_OFF = 100.0  # sum of squares per degree of freedom from which poles are missing, whatever the start
 LOWER = 0.5  # how far the BIC has to fall for another start to count as better
-NEGLIGIBLE = 1e-6
-"""Mean square, in units of the noise, below which residuals are rounding and tell nothing apart."""
+NEGLIGIBLE = 1e-6  # mean square, over the noise's, below which residuals are rounding and tell nothing apart
 WELL_BELOW = 0.1  # the same of records, in units of the noise that they show where they are quietest
-MOST_NUMERATORS, MOST_STARTS = 3, 4
-"""The likeliest numerators over each choice of poles, and of these the likeliest that are fitted."""
+MOST_NUMERATORS, MOST_STARTS = 3, 4  # the likeliest of a choice of poles, and of these fitted
 MOST_SHAPES = 12  # numerators over each choice of poles among which the simplest is looked for
 NARROW_BAND = 1.1  # ratio of the ends of a band in which a power of s is hardly more than a gain
 SAME = 1e-3  # relative distance below which two starts have the same poles
-MOST_RISE = 1.5
-"""Zeros moved to the other half-plane are a start where the misfit rises by no more than this factor."""
+MOST_RISE = 1.5  # zeros moved to the other half-plane are a start where the misfit rises by no more than this
 CLEAR = 6.0  # difference of BIC that is strong evidence (Kass & Raftery, J. Am. Stat. Assoc. 90, 1995).
-HALF_FORGOTTEN = 1.66
-"""What lines behind an exponential window share, 1.5 coth 1.5: the sum of ``1/(1 + (pi k/1.5)^2)`` over k."""
-UNLIKELY = 1e-5
-"""Share of right fits that may be called poor for what a function without structure describes better."""
+HALF_FORGOTTEN = 1.66  # 1.5 coth 1.5, the sum of 1/(1 + (pi k/1.5)^2) over k, for an exponential window
+UNLIKELY = 1e-5  # share of right fits that a function without structure may describe better: called poor
 
 
 class Stages:
@@ -298,11 +289,9 @@ def _try(thin: FitProblem, given: FitOptions, tried: list[Candidate]) -> None:
 
 
 def _is_founded(problem: FitProblem, scores: Sequence[Score], score: Score, criterion: str) -> bool:
-    """Return whether there is strong evidence for so many poles.
-
-    Noise looks like a resonance on some of the lines more often than on a given one, as many times as there
-    are lines (Sidak 1967): one more needs evidence against all of them.
-    """
+    """Return whether there is strong evidence for so many poles."""
+    # Noise looks like a resonance on some of the lines more often than on a given one, as many times as there
+    # are lines (Sidak 1967): one more needs evidence against all of them.
     chances = 2 * float(np.log(problem.count))
     fewer = [s for s in scores if s.order < score.order and s.status != "failed"]
     if problem.is_exact:  # rounding repeats itself, and is no noise: a pole that is there leaves far less
@@ -413,11 +402,9 @@ def _better_of(
 
 
 def _simplified(problem: FitProblem, best: Candidate, *, is_quick: bool) -> Candidate:
-    """Return the fit without the pairs of zeros that lie outside the band and explain nothing.
-
-    A pair far above the band is left out; one far below is a power of s, where that may be chosen, and so are
-    two real zeros of which one lies below and one above.
-    """
+    """Return the fit without the pairs of zeros that lie outside the band and explain nothing."""
+    # A pair far above the band is left out; one far below is a power of s, where that may be chosen, and so
+    # are two real zeros of which one lies below and one above.
     for r in range(len(problem.lines)):
         for i in (*reversed(range(best.refined.resonances.count)), None):
             now = best.refined.resonances
@@ -580,10 +567,8 @@ def refitted(candidate: Candidate, problem: FitProblem, steps: int = 2 * STEPS) 
 
 
 def lack_of_fit(problem: FitProblem, refined: Refined) -> float:
-    """Return how likely noise alone leaves so much more than a function without structure does.
-
-    What neighbouring lines share, as rounded numbers do, counts once: the ratio is over their correlation.
-    """
+    """Return how likely noise alone leaves so much more than a function without structure does."""
+    # What neighbouring lines share, as rounded numbers do, counts once: the ratio is over their correlation.
     reference = problem.reference
     if reference is None:
         return 1.0

@@ -35,18 +35,13 @@ Verdict = Literal["minimum", "undetermined", "nonminimum", "assumed"]
 
 LIMIT_DEGREES = 10.0  # phases part beyond this, or beyond the noise where that is larger
 SIGNIFICANT = 4.0  # standard deviations of the phase that noise alone is not taken to reach
-MOST_NOISE: Final = np.pi / 2
-"""Those beyond which a phase says nothing: what leads and what lags are the same."""
+MOST_NOISE: Final = np.pi / 2  # deviation of a phase beyond which it says nothing: lead and lag look alike
 SMOOTHED_LINES = 5  # width of the running median; single lines that are off do not count
-SHORTEST_RUN, LONGEST_GAP = 4, 10
-"""Lines that a band where phases part has at least, and has between two that are one."""
+SHORTEST_RUN, LONGEST_GAP = 4, 10  # fewest lines of a band where phases part; most that it skips
 LOWEST_DAMPING = 1e-4  # of mirrored zeros, whose logarithms are searched for
-MOST_LAG: Final = np.pi / 2
-"""The phase of a lag at the highest line up to which poles above the band, or a sensor, may be its cause."""
-WORSE: Final = 1.25
-"""How much larger a magnitude misfit may be than that of the magnitude alone to count as a fit as well."""
-POOR: Final = 2.0
-"""Magnitude misfit, over the noise and :data:`CAP`, beyond which resonances describe no magnitude at all."""
+MOST_LAG: Final = np.pi / 2  # a lag at the highest line that poles above the band, or a sensor, may cause
+WORSE: Final = 1.25  # a magnitude misfit up to this times the least one counts as a fit as well
+POOR: Final = 2.0  # magnitude misfit, over the noise and :data:`CAP`, from which resonances describe nothing
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,10 +80,8 @@ class PhaseTest:
 
 
 def judge_phase(problem: FitProblem, response: int, fitted: Resonances) -> PhaseTest:
-    """Fit the magnitude alone, from the mirror image of a fit in the left half-plane, and compare phases.
-
-    Where they part, functions with zeros in the left half-plane are fitted to magnitude and phase together.
-    """
+    """Fit the magnitude alone, from the mirror image of a fit in the left half-plane, and compare phases."""
+    # Where they part, functions with zeros in the left half-plane are fitted to magnitude and phase together.
     if problem.lines[response].measured.is_magnitude:
         return replace(not_judged(problem, response, fitted), verdict="assumed")
     search = _PhaseSearch(problem, response, fitted)
@@ -126,8 +119,7 @@ def not_judged(problem: FitProblem, response: int, fitted: Resonances) -> PhaseT
     return PhaseTest(fitted.one(response), difference, (), 0.0, "undetermined")
 
 
-KINDS: Final = ("magnitude", "both", "lag")
-"""What a search fits: the magnitude; magnitude and phase; these with a lag linear in frequency."""
+KINDS: Final = ("magnitude", "both", "lag")  # fit magnitude; it and phase; both and a linear lag
 
 
 class _PhaseSearch:

@@ -34,10 +34,7 @@ NO_PEAK = 0.5**0.5  # damping ratio from which a pair of poles raises no magnitu
 
 @dataclass(frozen=True, slots=True)
 class Free:
-    """What is fitted of each response besides its resonances: a gain, a lag of the sensor, a delay.
-
-    A lag may be negative, a lead, where ``lag_sign`` says so.
-    """
+    """What is fitted besides resonances: gain, a sensor's lag (a lead if ``lag_sign`` says so), delay."""
 
     gain: bool = False
     lag: bool = False
@@ -230,12 +227,10 @@ class Resonances:
         return self.shared() + sum(self._own(r, free) for r in range(self.responses))
 
     def pack(self, free: Free) -> Real:
-        """Return the parameters as one vector.
-
-        ln omega_p, ln zeta_p, ln real_p; then per response ln abs(omega_z), zeta_z of the zeros that are
-        there, ln abs(real_z) likewise and, when they are free, ln abs(gain), the lag and the delay in
-        milliseconds.
-        """
+        """Return the parameters as one vector."""
+        # ln omega_p, ln zeta_p, ln real_p; then per response ln abs(omega_z), zeta_z of the zeros there are,
+        # ln abs(real_z) likewise and, when they are free, ln abs(gain), the lag and the delay in
+        # milliseconds.
         parts = [np.log(self.omega_p), np.log(self.zeta_p), np.log(self.real_p)]
         for name, index, _ in self.own_places(free):
             values = getattr(self, name)[index]

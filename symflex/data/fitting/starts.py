@@ -29,11 +29,9 @@ from symflex.data.fitting.resonances import Complex, Real, Resonances, Values, W
 if TYPE_CHECKING:
     from symflex.data.fitting.problem import FitProblem
 
-LEAST_PROMINENCE = 0.02
-"""Of the logarithm of the magnitude: 0.2 dB, below the shoulders that close pairs leave."""
+LEAST_PROMINENCE = 0.02  # of the logarithm of the magnitude: 0.2 dB, below the shoulders of close pairs
 NOISE_MULTIPLE = 5.0  # a peak stands out by so many times the scatter from line to line
-TYPICAL_RATIO, TYPICAL_DAMPING = 1.1, 0.05
-"""omega_z over omega_p, and the damping ratio, that the paper calls typical."""
+TYPICAL_RATIO, TYPICAL_DAMPING = 1.1, 0.05  # omega_z/omega_p and damping ratio that the paper calls typical
 LOWEST_DAMPING, HIGHEST_DAMPING = 1e-4, 0.5  # damping ratios of a start are kept between these
 MATCHING_STEPS = 30  # of the iteration that matches height and depth in turn
 SMOOTHED = 5  # lines through which a parabola is laid (Savitzky and Golay 1964)
@@ -42,20 +40,17 @@ APART = 3  # lines between a peak that shows up later and those that are known
 # Of vector fitting and AAA.
 ITERATIONS = 25  # of vector fitting, which mostly settles in fewer
 FIRST_DAMPING = 0.01  # of the poles that vector fitting begins with, as its authors recommend
-UNMOVED = 1e-4
-"""Relative change of the poles at which vector fitting has settled: least squares go on from there."""
+UNMOVED = 1e-4  # relative change of poles at which vector fitting has settled: least squares go on from there
 SETTLED = 1e-6  # the least of its free constant
 SPARE = 2  # poles, or pairs of them, more than are looked for, which noise or a delay may take up
 GENEROUS = 10  # steps of a vector fit from which only a level of noise, or a first choice of poles, is taken
 REPHASED = 6  # rounds in which magnitudes without a phase take that of the function fitted to them
 LARGEST_START = 0.3  # damping ratio beyond which a pole counts less and less as a resonance
-FREE_POWERS = (-2, -1, 0, 1, 2)
-"""Beside the fractions where the power of s is not known: receptances to accelerances, free or held."""
+FREE_POWERS = (-2, -1, 0, 1, 2)  # beside the fractions, where the power is unknown: receptance to accelerance
 
 REAL = 1e-9  # share of a pole's magnitude from which its imaginary part makes it one of a pair
 
-FEW_POWERS = (0, 1)
-"""The same where poles outside the band are to be found: what they add looks like powers of s."""
+FEW_POWERS = (0, 1)  # the same to find poles outside the band: what they add looks like powers of s
 
 # Of delays.
 PER_TURN = 5  # delays tried per turn of the phase at the highest line
@@ -172,12 +167,9 @@ def _smoothed(level: Real) -> Real:
 
 
 def poles_from_vector_fitting(problem: FitProblem, order: int) -> list[Complex]:
-    """Return so many poles by relaxed vector fitting, begun in three ways.
-
-    From poles spread over the band; from the most conspicuous poles of a function with two pairs more, which
-    noise, a close pair or a delay may take up on the way; and without the powers of s that hide modes outside
-    the band.
-    """
+    """Return so many poles by relaxed vector fitting, begun in three ways."""
+    # One begins with poles spread over the band; one with the most conspicuous of two pairs more, which a
+    # close pair or a delay may take up; one drops the powers of s, which hide modes outside the band.
     low, high = problem.band
     if not order:
         return [np.zeros(0, np.complex128)]
@@ -190,11 +182,9 @@ def poles_from_vector_fitting(problem: FitProblem, order: int) -> list[Complex]:
 
 
 def poles_from_aaa(problem: FitProblem, count: int) -> list[Complex]:
-    """Return the poles of an AAA approximant of the first response.
-
-    Noise gives AAA spurious poles; of those in the band the ones with the largest residue over real part are
-    taken. Where noise has drowned some, approximants of a higher degree are tried.
-    """
+    """Return the poles of an AAA approximant of the first response."""
+    # Noise gives spurious poles: those in the band with the largest residue over real part are taken. Where
+    # noise has drowned some, approximants of a higher degree are tried.
     line = problem.lines[0]
     low, high = problem.band
     for degree in (2 * count, 2 * count + SPARE, 3 * count + SPARE):

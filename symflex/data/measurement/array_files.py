@@ -30,8 +30,7 @@ import numpy.typing as npt
 CUT = "it is cut short"
 SHOWN = 80  # characters of a message that quotes a file
 LAST_CHARACTER: Final = 0x10FFFF
-SURROGATES: Final = (0xD800, 0xDFFF)
-"""The range of Unicode, and the halves of pairs in it that are not characters (Unicode 15, section 3.9)."""
+SURROGATES: Final = (0xD800, 0xDFFF)  # halves of pairs, which are not characters (Unicode 15, section 3.9)
 DIMENSIONS_LIMIT = 32  # of numpy 1; version 2 takes 64
 
 
@@ -247,13 +246,11 @@ _MATRIX, _COMPRESSED = 14, 15  # data types of elements: an array, and a compres
 _CELL, _STRUCT, _OBJECT, _CHAR, _NUMERIC, _OPAQUE = 1, 2, 3, 4, range(6, 16), 17
 _COMPLEX_FLAG = 0x0800
 _STORED_4: Final = ("f8", "f4", "i4", "i2", "u2", "u1")
-_TEXT_4, _LAST_MOPT = 1, 4999
-"""Version 4 begins with the decimal digits MOPT: machine, 0, kind of number, kind of matrix."""
+_TEXT_4, _LAST_MOPT = 1, 4999  # version 4 begins with digits MOPT: machine, 0, kind of number, kind of matrix
 _NAME_LIMIT = 63  # characters of a name in MATLAB
 VARIABLES_LIMIT: Final = 10_000  # also of cells, and of lines of a text
 TEXT_LIMIT = 1000  # characters of a line: of texts, numpy gives each the room of the longest
-_OTHER: Final[npt.NDArray[Any]] = np.empty(0, object)
-"""What stands for a sparse matrix and the like, whose content nobody asks for."""
+_OTHER: Final[npt.NDArray[Any]] = np.empty(0, object)  # stands for a sparse matrix and the like
 DEEPEST = 8  # levels of structures in structures, and of cells
 
 
@@ -269,13 +266,11 @@ class NewerFileError(ValueError):
 
 
 def read_variables(data: bytes, limit: int) -> Arrays:
-    """Return the variables of a MATLAB file by name; compressed ones may grow to ``limit`` bytes together.
-
-    Numbers and logical values have their shape without dimensions of size one, text is an array of lines,
-    cells of text an array of their texts, an object one :class:`ClassName`; a field of a structure is called
-    ``data.P.frf``, of the second of several ``data(2).P.frf``, a cell ``c{3}``. Of what is none of these
-    there is an empty array of objects.
-    """
+    """Return the variables of a MATLAB file by name; compressed ones may grow to ``limit`` bytes together."""
+    # Numbers and logical values have their shape without dimensions of size one, text is an array of lines,
+    # cells of text an array of their texts, an object one :class:`ClassName`; a field of a structure is
+    # called ``data.P.frf``, of the second of several ``data(2).P.frf``, a cell ``c{3}``. Others are empty
+    # arrays.
     if 0 in data[:4]:  # in version 5 text stands there
         return _version_4(data)
     require(len(data) >= _HEADER, CUT)
@@ -319,10 +314,8 @@ def _element(reader: ByteReader) -> tuple[int, memoryview]:
 
 
 def _matrix(reader: ByteReader, depth: int) -> tuple[str, Arrays]:
-    """Return name and value of an array: flags, dimensions, name, then what its class asks for.
-
-    The value of a structure or a cell array is several, by what is to be added to the name; others have "".
-    """
+    """Return name and value of an array: flags, dimensions, name, then what its class asks for."""
+    # The value of a structure or a cell array is several, by what is to be added to the name; others have "".
     flags = ByteReader(_element(reader)[1], reader.order).integer("u4")
     kind = flags & 0xFF
     if kind == _OPAQUE:
