@@ -40,13 +40,11 @@ LARGEST_PRIME = 1000
 LARGEST_COFACTOR_BITS = 256
 LARGEST_NUMBER_BITS = 20_000
 CIRCULAR = ("cos", "sin", "tan")
-UNIT = "unit(i)"
-"""Generator of the imaginary unit, for formulas in omega: ``(-x)^(1/4)`` is ``x^(1/4)*(1 + i)/sqrt(2)``."""
+UNIT = "unit(i)"  # generator of i, for formulas in omega: ``(-x)^(1/4)`` is ``x^(1/4)*(1 + i)/sqrt(2)``
 HOLE = "?"  # generator that stands for a part of a formula whose right value is looked for
 
 Key = tuple[tuple[str, Fraction], ...]
-Recipe = tuple[tuple[Key, int], ...]
-"""A polynomial in roots, by name and exponent, so that it means the same in a larger field."""
+Recipe = tuple[tuple[Key, int], ...]  # a polynomial in roots, by name and exponent, valid in larger fields
 Multiples = Sequence[tuple[int, int]]  # base arguments by number, each with how many times it is taken
 
 

@@ -13,10 +13,8 @@ from pathlib import Path
 import click
 
 BUDGET_EXCEEDED = 5  # an exit code
-YOUNG_OBJECTS = 100_000
-"""Made between two looks for cycles among them, some 20 MB. Python's 700 are few: a start keeps all."""
-WATCHED = "watched"
-"""What the context holds of a command line that was started as a program, not called from Python."""
+YOUNG_OBJECTS = 100_000  # made between looks for cycles, some 20 MB; Python's 700 are few: a start keeps all
+WATCHED = "watched"  # what the context holds of a command line that was started as a program
 
 COMMANDS: dict[str, tuple[str, str]] = {
     "check": ("formulas", "Check a specification and report every problem at once."),
@@ -42,19 +40,17 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "elements": ("library", "List the element and block library."),
     "units": ("library", "List the units and prefixes that quantities may have."),
     "schema": ("library", "Write the JSON Schema of specifications, for editors."),
-}
-"""The module of each, in which its function has its name, and what it does."""
-GROUPS = {
+}  # the module of each, in which its function has its name, and what it does
+GROUPS = {  # how the help lists them
     "Begin": "new examples elements units schema",
     "Model": "check derive draw",
     "Analyse": "roots rational respond shape sweep stability peak colocation",
     "Show and hand on": "plot live export report",
     "Papers and measurements": "audit fit measure",
 }
-"""How the help lists them."""
 
 
-MEANT = {
+MEANT = {  # what one command is called elsewhere, and what to write here
     **dict.fromkeys(("pole", "poles", "zeros", "eigenvalues", "frequencies"), "roots SPEC"),
     **dict.fromkeys(("simulate", "ramp", "response", "time"), "respond SPEC"),
     **dict.fromkeys(("norm", "hinf", "hinfnorm", "h2"), "peak SPEC"),
@@ -64,7 +60,6 @@ MEANT = {
     **dict.fromkeys(("slider", "sliders", "interactive", "html"), "live SPEC"),
     **dict.fromkeys(("help", "commands"), "--help"),
 }
-"""What one command is called elsewhere, and what to write here."""
 NO_CACHE = "--no-cache"
 GONE = "symflex no longer caches derivations on disk: leave this option out."
 """The hint for NO_CACHE and the command ``cache``, which earlier versions had."""

@@ -72,5 +72,4 @@ OFFERED: Mapping[str, Callable[[str], Sequence[str]]] = {
     "--over": _assigned,
     "--form": _forms,
     "--to": _targets,
-}
-"""What each option offers, of the specification's path; others complete as their types do."""
+}  # what each option offers, of the specification's path; others complete as their types do

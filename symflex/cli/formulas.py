@@ -20,7 +20,7 @@ from symflex.options import AuditOptions, CheckOptions, DeriveOptions, ExportOpt
 if TYPE_CHECKING:
     from symflex.codegen.export import Exporter
 
-TARGETS_MEANT = {
+TARGETS_MEANT = {  # export targets by other names
     "python": "numpy",
     "octave": "matlab",
     "simulink": "matlab",
@@ -28,7 +28,6 @@ TARGETS_MEANT = {
     "c++": "c",
     "ss": "state-space",
 }
-"""Export targets by other names."""
 
 
 @command_of("check", CheckOptions)

@@ -30,11 +30,9 @@ from symflex.errors import Diagnostic, ModelError
 SAMPLES, FREQUENCIES = 1000, 200
 """Samples of a run that measures rounding, +1 or -1 at random, which excites all frequencies, and frequencies
 at which responses are compared, over four decades up to half of the sampling frequency."""
-MEASURE_BITS = 600
-"""Precision of the run that counts as exact: differences of close poles cost a few hundred bits."""
+MEASURE_BITS = 600  # precision of the run that counts as exact: close poles cost a few hundred bits
 LARGE = 1e-9  # relative error from which the user is warned: the best converters, of 24 bits, resolve 6e-8
-SMALLEST = float_info.min / float_info.epsilon
-"""Share of the largest coefficient below which another one is less than its rounding."""
+SMALLEST = float_info.min / float_info.epsilon  # share of the largest coefficient that is below its rounding
 PAIR = 2  # poles of a section of second order, and zeros
 
 

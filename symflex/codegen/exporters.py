@@ -19,7 +19,7 @@ from symflex.codegen.sampled import SampledLanguage
 from symflex.codegen.state_space import StateSpaceExporter
 from symflex.codegen.typst import TypstExporter
 
-EXPORTERS: dict[str, Exporter] = {
+EXPORTERS: dict[str, Exporter] = {  # ``symflex export``
     "numpy": NUMPY,
     "array-api": ARRAY_API,
     "jax": JAX,
@@ -32,16 +32,13 @@ EXPORTERS: dict[str, Exporter] = {
     "latex": LatexExporter(),
     "typst": TypstExporter(),
 }
-"""``symflex export``."""
 
 SAMPLED: dict[str, SampledLanguage] = {
     "c": SAMPLED_C,
     "numpy": SAMPLED_PYTHON,
     "fmu": FMU,
-}
-"""``symflex export --sample``, besides state-space; what is no key of ``EXPORTERS`` exists only sampled."""
+}  # ``symflex export --sample``, besides state-space; what is no key of ``EXPORTERS`` exists only sampled
 
 SUMMARIES: Mapping[str, str] = {name: x.summary for name, x in EXPORTERS.items()} | {
     name: f"with --sample: {x.summary}" for name, x in SAMPLED.items() if name not in EXPORTERS
-}
-"""What each target makes, in a line."""
+}  # what each target makes, in a line

@@ -36,14 +36,13 @@ KEYWORDS = frozenset(
     """.split()
 )
 
-NAMES = frozenset(
+NAMES = frozenset(  # what generated code uses, and names that a reader would miss
     """
     Infinity NaN Math Object Array Float64Array Number String Symbol Proxy Reflect JSON Map Set Promise Error
     RangeError TypeError globalThis window self document name length prototype constructor isFinite isNaN
     parseInt parseFloat PARAMETERS TRANSFER_FUNCTIONS p into value s s_re s_im number
     """.split()
 )
-"""What generated code uses, and names that a reader would miss."""
 PARTS = parts_of("javascript.js")
 RESERVED = KEYWORDS | NAMES | {name for names in PARTS for name in names}
 LONGEST = 60  # characters of an expression that is used more than once, from which it gets a name

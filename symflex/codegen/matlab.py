@@ -27,7 +27,7 @@ from symflex.transfer import AnyTransferFunction, TransferFunction
 WIDTH = 88  # columns of generated MATLAB
 LONGEST = 63  # characters that MATLAB tells identifiers apart by
 
-KEYWORDS = frozenset(
+KEYWORDS = frozenset(  # keywords of both languages
     "__FILE__ __LINE__ arguments break case catch classdef continue do else elseif end end_try_catch "
     "end_unwind_protect endarguments endclassdef endenumeration endevents endfor endfunction endif "
     "endmethods endparfor "
@@ -35,24 +35,20 @@ KEYWORDS = frozenset(
     "otherwise parfor persistent properties return spmd switch try until unwind_protect "
     "unwind_protect_cleanup while".split()
 )
-"""Keywords of both languages."""
 
-FUNCTIONS = frozenset(
+FUNCTIONS = frozenset(  # what generated code uses, and constants that a reader would miss
     "i j pi e eps Inf inf NaN nan NA ans true false end nargin nargout varargin varargout exp log sqrt sin "
     "cos tan sinh cosh tanh abs real imag conj complex any all size zeros ones reshape numel unique isempty "
     "isnumeric islogical isreal isscalar isstruct isfield isa ischar char double error cell cellfun "
     "fieldnames struct2cell mod max min find repmat eye eig diag ceil log2 isfinite sum struct "
     "acos cumsum diff fliplr floor interp1 inv isequal ismember kron nchoosek num2cell prod sort".split()
 )
-"""What generated code uses, and constants that a reader would miss."""
-WORDS = frozenset({"s", "G", "given", "value"})
-"""Variables of the generated code; parameters leave them to it."""
+WORDS = frozenset({"s", "G", "given", "value"})  # variables of generated code; parameters leave them to it
 TOOLBOX = frozenset({"tf", "zpk", "ss", "frd", "roots"})  # what no function of the file may hide
 PARTS = parts_of("matlab.m")
 NAMES = frozenset({"default_parameters"}.union(*PARTS))  # names of the functions that others call
 RESERVED = KEYWORDS | FUNCTIONS | NAMES | WORDS
-TITLE_LENGTH, LONGEST_STEM = 30, 64
-"""Characters of a title that a function is named by, and of a file's name that a message shows."""
+TITLE_LENGTH, LONGEST_STEM = 30, 64  # characters of a title in a function's name, and of a file's in messages
 
 EXPANSION = (
     "s and parameters are expanded against each other, as operators expand them. "
@@ -62,10 +58,9 @@ EXPANSION = (
 _LINK = re.compile(r"<(?=[A-Za-z/])")
 ROOM = WIDTH - 4  # columns of help texts
 
-OTHER_FIELDS = frozenset(
+OTHER_FIELDS = frozenset(  # other fields of the struct that the main function returns
     "parameters units descriptions transfer_functions frequency_responses systems coefficients".split()
 )
-"""Other fields of the struct that the main function returns."""
 SYSTEM_ROLES = ("system", "coefficients")  # the two functions of a rational transfer function
 
 

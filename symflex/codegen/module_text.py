@@ -19,19 +19,17 @@ from symflex.print.forms import PrintedForm, print_form
 from symflex.print.latex.table import decimal_text
 from symflex.transfer import AnyTransferFunction
 
-FORMULA_LENGTH = 1_600
-"""Characters of a formula that a docstring shows: twenty lines, which fill a terminal of 24."""
+FORMULA_LENGTH = 1_600  # characters of a formula in a docstring: twenty lines of a terminal's 24
 FORMULA_TERMS, KERNEL_TERMS, NESTED_SIZE = 1000, FORMULA_LENGTH // 16, 300
 """Terms up to which a formula is formatted, without kernels and with them (a product of two takes some
 twenty characters), and operations up to which a nested form is."""
 
 NAMED = 12  # members of a network that a docstring names: three lines
 
-FOLLOWED = (
+FOLLOWED = (  # what is said of functions of members that vary along x
     "Waves are followed piece by piece along members whose coefficients vary. The faster they oscillate, the "
     "more pieces there are; beyond a few thousand waves, values are NaN."
 )
-"""What is said of functions of members that vary along x."""
 
 
 def formula_of(tf: AnyTransferFunction) -> tuple[str, ...]:

@@ -37,12 +37,11 @@ if TYPE_CHECKING:
 
 SHOWN_POLES = 8  # poles in z that a comment lists
 
-METHODS = {
+METHODS = {  # how a file describes the method that it was sampled by
     "zoh": "the input held from one to the next, exactly",
     "tustin": "by the bilinear transformation",
     "matched": "with poles and zeros matched",
 }
-"""How a file describes the method that it was sampled by."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -123,8 +123,7 @@ class StateEquations:
 
 TERM_LIMIT = 20_000  # terms of all entries together; beyond that the text would be megabytes
 EQUATION_LINES = 60  # lines of equations in the docstring
-WORK, FEWEST = 400 * 12**3, 20
-"""Frequencies times the cube of the order, which a measurement may cost, and its fewest frequencies."""
+WORK, FEWEST = 400 * 12**3, 20  # frequencies times order cubed, at most, and fewest frequencies measured
 
 IMPORTS = """\
 # ruff: noqa: E501, E741, N802, N803, N806, PLR0915, RUF001, RUF002, RUF100  (names and texts are the model's)

@@ -31,10 +31,8 @@ PITCH: Final = {"dc_motor": 19.0}  # distance of two ends on one side of a symbo
 USUAL_PITCH, GROUNDED_PITCH = 9.0, 20.0
 PLACES: Final = {"dc_motor": 3, "voice_coil": 3}
 """Ends for which a symbol has places of their own, where that is fewer than two on each side."""
-FEEDBACK: Final = 15.0
-"""How far above the axis of an amplifier a wire goes from its output's side to an input."""
-INSET: Final = {"dc_motor": (0.233, 0.5)}
-"""How far one end, and how far two, reach into a symbol, as a share of its length."""
+FEEDBACK: Final = 15.0  # how far above an amplifier's axis a wire goes from its output's side to an input
+INSET: Final = {"dc_motor": (0.233, 0.5)}  # how far one end, or two, reach into a symbol, in its lengths
 COORDINATES: Final = ("beam", "rod", "shaft", "string")  # members with a coordinate along them
 NEAR_END: Final = 4.0  # how far from an end of a member an output at that end is marked [points]
 WALL: Final = 6.0  # half the height of the ground at one symbol [points]
@@ -51,12 +49,11 @@ class Spacing:
     has_room: bool  # gaps are as wide as the marks above them
 
 
-SPACINGS: Final = (
+SPACINGS: Final = (  # spacings, from the widest, which is taken if it fits, to the last
     Spacing(5.0, 20.0, 1.0, 1.0, has_room=True),
     Spacing(4.0, 18.0, 0.9, 0.9, has_room=False),
     Spacing(2.0, 15.0, 0.76, 0.66, has_room=False),
 )
-"""Spacings, from the widest, which is taken if it fits, to the last."""
 
 
 @dataclass

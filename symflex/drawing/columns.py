@@ -18,8 +18,7 @@ REACH: Final = 7.0  # how far a bar or body goes beyond the wires that meet it
 FLAT, SHOE = 2.4, 8.0  # the same of a node on a member, and of one in a guide
 LANE: Final = 7.0  # width of a lane for a lead upwards or downwards
 ARROW: Final = 11.0  # width of an arrow that stands upright, with the space before its text
-UPRIGHT: Final = ("lift", "turn", "probe", "push", "torque", "raise", "twist")
-"""Marks that stand upright at a node; others run along x."""
+UPRIGHT: Final = ("lift", "turn", "probe", "push", "torque", "raise", "twist")  # at nodes; others run along x
 HANGING: Final = 24.0  # length of what hangs from a node, where its symbol says nothing
 
 

@@ -30,8 +30,7 @@ EDGE: Final = 3.5  # space between a text and the box around it
 TURN: Final = 10.0  # room for a wire that goes back to the left
 APART: Final = 6.0  # space between rows
 WIDEST: Final = 90.0  # widest formula in a box; a longer one is not printed
-WIDEST_FORMULA, BETWEEN_FORMULAS = 200.0, 4.0
-"""Widest formula that is written out below the diagrams, and the space after it [points]."""
+WIDEST_FORMULA, BETWEEN_FORMULAS = 200.0, 4.0  # widest formula below diagrams, and space after it [points]
 MOST_PATHS: Final = 2000  # paths that are tried for the longest one, from a start
 NAMED: Final = ("input", "reading", "signal")
 BOXES: Final = ("gain", "block")

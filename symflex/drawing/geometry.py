@@ -167,8 +167,7 @@ class Placed:
         return self._mapped(turned, texts)
 
 
-MOST_CORNERS, LARGE = 6, 36.0
-"""Largest slanted member; one with more corners is a symbol, or a long member that tapers [points]."""
+MOST_CORNERS, LARGE = 6, 36.0  # largest slanted member; with more corners, a symbol or a taper [points]
 _SHORT, _PIECE = 20.0, 3.0
 
 

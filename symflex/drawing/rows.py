@@ -57,8 +57,7 @@ from symflex.library.elements import CIRCUITS
 SIDE_ARROW: Final = 20.0
 FACE: Final = 9.0  # room of a wall or a guide beside a node
 MARK: Final = 17.0  # height of what stands upright at a node
-WIDEST_LENGTH: Final = 34.0
-"""Widest length that a dimension shows; a longer one is in the label of its member [points]."""
+WIDEST_LENGTH: Final = 34.0  # widest length that a dimension shows; a longer one is in the label [points]
 
 
 @dataclass(frozen=True, slots=True)

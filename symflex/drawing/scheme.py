@@ -296,8 +296,7 @@ TAPERS: Final = {
     "beam": (("I", "EI"), ("A", "rhoA")),
     "rod": (("A", "EA", "rhoA"), ("A", "rhoA", "EA")),
     "shaft": (("J", "GJ", "rhoJ"), ("J", "rhoJ", "GJ")),
-}
-"""Measures of a section that may vary along a member, the first that is given: how stiff it is, and heavy."""
+}  # measures of a section that may vary along a member, the first that is given: how stiff it is, and heavy
 
 
 def _sections(use: PlacedElement, model: Model) -> Depths:
@@ -343,8 +342,7 @@ STIFF: Final[dict[str, tuple[tuple[str, ...], str]]] = {
     "rod": (("E", "A"), "A"),
     "shaft": (("G", "J"), "J"),
     "string": (("N",), "A"),
-}
-"""What makes a member stiff, and the measure of its section by which it is heavy."""
+}  # what makes a member stiff, and the measure of its section by which it is heavy
 JOINED: Final = r",\,"
 LABEL_LENGTH: Final = 4  # parameters of an element that are written at it; of more, its name is
 
@@ -476,8 +474,7 @@ def values_of(model: Model) -> dict[str, float]:
 
 
 STATIONS: Final = 24  # sections at which a member that varies along x is measured
-UNKNOWN: Final = 0.5
-"""What a parameter without value is taken for, there: of ``1 - c*x/l`` a taper can be seen."""
+UNKNOWN: Final = 0.5  # what a parameter without value is taken for: of ``1 - c*x/l`` a taper can be seen
 
 
 def depths(

@@ -271,8 +271,7 @@ TRANSFORMERS: Final[dict[tuple[str, str], Callable[[float], Strokes]]] = {
     ("translation", "rotation"): rack,
     ("translation", "translation"): lever,
     ("electrical", "electrical"): coils,
-}
-"""A transformer by the domains of its two sides; of other domains it is a box."""
+}  # a transformer by the domains of its two sides; of other domains it is a box
 
 
 def mirrored(strokes: Strokes, length: float) -> Strokes:
@@ -309,7 +308,7 @@ _RESISTOR: Final = branch(24.0, "line 0,0 .18,0; box .18,-2.8 .82,2.8; line .82,
 _CAPACITOR: Final = branch(
     20.0, "line 0,0 .5-1.5,0; 1.2 .5-1.5,-4.5 .5-1.5,4.5; 1.2 .5+1.5,-4.5 .5+1.5,4.5; line .5+1.5,0 1,0"
 )
-SYMBOLS: Final[dict[str, ElementSymbol]] = {
+SYMBOLS: Final[dict[str, ElementSymbol]] = {  # symbols by the type of an element; a new element is a line
     **dict.fromkeys(("mass", "inertia", "rigid_body"), ElementSymbol("body")),
     # A zigzag.
     "spring": branch(
@@ -393,7 +392,6 @@ SYMBOLS: Final[dict[str, ElementSymbol]] = {
         "line .9,0 1,0",
     ),
 }
-"""Symbols by the type of an element; a new element is a line."""
 
 # Inputs and sources between two nodes are drawn as a distance that is given; as two arrows, out of the gap
 # where the first end is on the right; and as a motor without a circuit, which turns its ends apart.
@@ -418,5 +416,4 @@ TRANSFORMER_SYMBOLS: Final[dict[str, Callable[[float], Strokes]]] = {
     "lever": lever,
     "coils": coils,
     "box": box,
-}
-"""What a specification may call the symbol of a transformer."""
+}  # what a specification may call the symbol of a transformer

@@ -9,7 +9,7 @@ from symflex.errors.diagnostic import Diagnostic
 from symflex.errors.exceptions import UsageError
 
 _LACKING: Final = "needs the library {}, which is not installed"
-OPTIONAL: Final = {
+OPTIONAL: Final = {  # error code, message and how to install, by package
     "control": ("SF902", "{} is not installed", "pip install 'symflex[control]'"),
     "anywidget": ("SF902", "{} is not installed", "pip install 'symflex[notebook]'"),
     "scipy": ("SF902", "{} is not installed", "pip install scipy"),
@@ -22,7 +22,6 @@ OPTIONAL: Final = {
     "nptdms": ("SF914", f"a .tdms file {_LACKING}", "pip install 'symflex[files]'"),
     "distributed": ("SF914", f"a cluster {_LACKING}", "pip install 'symflex[sweep]'"),
 }
-"""Error code, message and how to install, by package."""
 
 
 def installed(module: str) -> Any:  # noqa: ANN401 (these libraries have no types)

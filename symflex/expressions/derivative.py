@@ -51,8 +51,7 @@ SLOPES: Final[Mapping[str, Callable[[Call, Expression], Expression]]] = {
     "abs": lambda _, inner: Call("sgn", inner),
     "sgn": lambda *_: number(0),
     "sign": lambda *_: number(0),
-}
-"""The derivative of every function by its argument."""
+}  # the derivative of every function by its argument
 AT_ZERO: Final = {
     **dict.fromkeys(("sqrt", "sin", "tan", "sinh", "tanh", "atan", "abs"), 0),
     **dict.fromkeys(("exp", "cos", "cosh"), 1),

@@ -31,7 +31,7 @@ class Limits:
     order: int  # primes after the name of a field
 
 
-USER_LIMITS = Limits(
+USER_LIMITS = Limits(  # limits for texts that people write
     characters=10_000,
     parentheses=64,
     depth=96,
@@ -41,9 +41,8 @@ USER_LIMITS = Limits(
     bits=4_000,
     order=64,
 )
-"""Limits for texts that people write."""
 
-PROGRAM_LIMITS = Limits(
+PROGRAM_LIMITS = Limits(  # limits for texts that the program itself has written
     characters=10_000_000,
     parentheses=200,
     depth=200,
@@ -53,7 +52,6 @@ PROGRAM_LIMITS = Limits(
     bits=1_000_000,
     order=64,
 )
-"""Limits for texts that the program itself has written."""
 
 
 class Size(NamedTuple):

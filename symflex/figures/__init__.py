@@ -36,8 +36,7 @@ _HOME: Final = {
     "kinds": "FIGURES LOOP_FIGURES draw draw_loop draw_over draw_shape part_shown picture_of_shape",
     "style": "DEFAULT_FONT FONTS checked_font",
     "sweep": "draw_sweep",
-}
-"""Modules of the public names, imported on first use: a drawing of a model takes a style and no roots."""
+}  # modules of the public names, imported on first use: a drawing of a model takes a style and no roots
 
 
 def __getattr__(name: str) -> object:

@@ -45,8 +45,7 @@ if TYPE_CHECKING:
 
 
 SHORT_BAND_DECADES: Final = 1.3
-NARROW_BAND_DECADES: Final = 0.6
-"""Width of a narrow band: between a frequency and four times it there may be one tick of 1, 2 and 5."""
+NARROW_BAND_DECADES: Final = 0.6  # a narrow band: from f to 4 f there may be one tick of 1, 2 and 5
 FARTHEST: Final = 50.0  # times what is shown; numbers beyond a page would overflow in what reads the figure
 RIGHT_HALF_PLANE: Final = "#FBEDE4"  # a tint, pale enough for every line on it
 

@@ -50,15 +50,11 @@ LEGEND_COLUMNS, LEGEND_COLUMNS_WITH_UNITS = 3, 2
 UNIT_INCHES: Final = 1.05  # height of the panel of every unit but the first
 RATIO: Final = 1.25  # height of the panel of magnitudes over that of phases
 PHASE_MARGIN: Final = 1.12
-PHASE_STEPS: Final = (45, 90, 180, 360, 720, 1440)
-"""Degrees between ticks: the first that leaves fewer ticks than :data:`PHASE_TICKS`."""
+PHASE_STEPS: Final = (45, 90, 180, 360, 720, 1440)  # degrees: the first with fewer than PHASE_TICKS ticks
 PHASE_TICKS: Final = 7.5
-UNDAMPED: Final = 1e-4
-"""Damping ratio below which a peak or trough has no end worth showing and is cut off at the frame."""
-UNDAMPED_REACH: Final = 0.01
-"""Values this close to such a root, relative to its frequency, do not count for the limits."""
-ASYMPTOTE: Final = 0.4
-"""Width of asymptotes [pt]; they are drawn of functions of finite order, whose limits hold on s = j omega."""
+UNDAMPED: Final = 1e-4  # damping ratio below which a peak or trough has no end worth showing and is cut off
+UNDAMPED_REACH: Final = 0.01  # values this close to such a root, relatively, do not count for the limits
+ASYMPTOTE: Final = 0.4  # width [pt]; functions of finite order have asymptotes that hold on s = j omega
 UNDAMPED_MARGIN_DB: Final = 15.0  # room beyond the damped values where peaks are cut off
 
 

@@ -38,8 +38,7 @@ if TYPE_CHECKING:
     Complex = npt.NDArray[np.complex128]
 
 
-FIT_RATIOS, COHERENCE_RATIO = (1.9, 1.3, 0.9), 0.5
-"""Heights of the panels of magnitude, phase, residual, and of coherence."""
+FIT_RATIOS, COHERENCE_RATIO = (1.9, 1.3, 0.9), 0.5  # heights of magnitude, phase, residual; of coherence
 FIT_INCHES, SMALL_INCHES, ORDER_INCHES = 4.9, 2.9, 2.9
 FIT_COLUMNS: Final = 2
 FEW_RESPONSES: Final = 4  # responses up to which two stand side by side; more stand three to a row

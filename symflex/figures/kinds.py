@@ -51,8 +51,7 @@ LOOP_FIGURES: dict[str, Callable[[AnyLoop, Canvas], Figure]] = {
     "nichols": draw_loop_phase,
     "nyquist": draw_loop_gain,
     "sensitivity": draw_sensitivity,
-}
-"""Kinds that are drawn of a loop and its gain, by :func:`draw_loop`."""
+}  # kinds that are drawn of a loop and its gain, by :func:`draw_loop`
 
 
 def draw(

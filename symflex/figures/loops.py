@@ -77,13 +77,12 @@ from symflex.transfer import AnyBoundFunction
 HEIGHT_INCHES: Final = 3.3
 ROOM: Final = 1.12
 ZERO: Final = "zero"
-LOOKS: Final[dict[Kind, tuple[str, str, float]]] = {
+LOOKS: Final[dict[Kind, tuple[str, str, float]]] = {  # shape, colour and size of marks
     "pole": ("x", COLOURS[1], 5),
     "nominal": ("*", "black", 6),
     "last": ("s", COLOURS[0], 3.4),
     "zero": ("o", COLOURS[2], 6.5),
 }
-"""Shape, colour and size of marks."""
 COLOUR_OF: Final = {kind: colour for kind, (_, colour, _) in LOOKS.items()}
 CLOSE: Final = 0.3  # narrowest width shown, over the height
 FAR_OUT, ZEROS_OUT, AGREE = 2.0, 1.3, 1.001
@@ -236,8 +235,7 @@ AT_REST: Final = 1e-3  # share of its lowest frequency at which a curve is as go
 PEAKED: Final = 3.0  # a curve is shown up to so many times the value that a tenth of it exceeds
 OBLONG: Final = 4.0  # limits asked for whose ratio exceeds this have a scale each
 LEGEND_POINTS: Final = 8.0
-LINE_POINTS: Final = 34.0
-"""Length of a legend's line with the gaps beside it: 2 of handle, 0.8 and 1.4 of gaps, in letters."""
+LINE_POINTS: Final = 34.0  # length of a legend's line with its gaps: 2 of handle, 0.8 and 1.4, in letters
 WITHIN: Final = 0.9  # an arrow stands in so much of what is shown
 
 

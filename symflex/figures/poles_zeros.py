@@ -53,14 +53,12 @@ PANELS_IN_COLUMN: Final = 3
 PANELS_ON_PAGE: Final = 4
 LEFT, RIGHT, BOTTOM, TOP, GAP = 0.54, 0.15, 0.38, 0.20, 0.24
 NARROWEST, WIDEST = 0.6, 1.25
-INSET, PAD, ROOM_POINTS = 0.3, 24.0, 110.0
-"""Share of a panel that an inset takes, room for its numbers, and the least side of a panel with one [pt]."""
+INSET, PAD, ROOM_POINTS = 0.3, 24.0, 110.0  # inset's share, room for its numbers, least side [pt]
 TALLEST_INCHES: Final = 2.6
-LOOKS: Final[dict[Kind, tuple[str, str, float]]] = {
+LOOKS: Final[dict[Kind, tuple[str, str, float]]] = {  # shape, colour and size of marks
     "zero": ("o", COLOURS[0], 4.6),
     "pole": ("x", COLOURS[1], 4.8),
 }
-"""Shape, colour and size of marks."""
 SHADED: Final = "shaded: for all combinations; dashed: not proved"
 COLOUR_OF: Final = {kind: colour for kind, (_, colour, _) in LOOKS.items()}
 

@@ -27,15 +27,12 @@ if TYPE_CHECKING:
 
 GAP_RATIO: Final = 5.0  # neighbouring natural frequencies further apart than this do not belong together
 DECADES: Final = 100.0  # resonances are shown up to so many times the lowest
-CROWDED: Final = 0.15
-"""Roots nearer to the origin than this share of those shown are one blot: an inset shows them."""
+CROWDED: Final = 0.15  # roots nearer to 0 than this share of those shown are one blot: an inset shows them
 REAL_REACH: Final = 2.5  # real roots are shown up to so many times the highest resonance shown
-UNSTABLE_REACH: Final = 10.0
-"""Poles in the right half-plane are shown up to so many times what else is; the others at the border."""
+UNSTABLE_REACH: Final = 10.0  # unstable poles are shown up to so many times all else, others at the border
 MARGIN: Final = 0.2  # room around the roots shown, over their size
 MARGIN_FOR_NOTES: Final = 0.5  # the same at a side where notes name the roots outside
-RIM: Final = (0.95, 1.03)
-"""A root so near the frame, relative to its distance from the origin, would be cut by it."""
+RIM: Final = (0.95, 1.03)  # a root so near the frame, relative to its distance from 0, would be cut by it
 WIDER: Final = 1.085
 WIDENINGS: Final = 8  # times the view may be widened so that no root is cut by its frame
 PLAIN_LIMIT: Final = 1e5

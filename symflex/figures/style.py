@@ -31,8 +31,7 @@ NOTE_POINTS: Final = 7.0
 TITLE_POINTS: Final = 8.0
 LINE_INCHES: Final = 0.13  # height of a line of a title
 TITLE_SPACING: Final = 0.95
-DOTS_SHOWN: Final = 120
-"""Dots per inch of a figure in a notebook: a column is then as wide as its lines of text."""
+DOTS_SHOWN: Final = 120  # dots per inch in a notebook: a column is then as wide as its lines of text
 
 # Okabe and Ito (2008), distinct for every kind of colour blindness; their yellow is too pale for a line.
 COLOURS: Final = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
@@ -52,8 +51,7 @@ FONTS: Final[dict[str, dict[str, object]]] = {
         "axes.formatter.use_mathtext": True,
     },
     "sans": {"font.family": ["DejaVu Sans"], "mathtext.fontset": "dejavusans"},
-}
-"""Fonts of texts: STIX, at home next to Times; Computer Modern, that of LaTeX; one for slides."""
+}  # fonts of texts: STIX, at home next to Times; Computer Modern, that of LaTeX; one for slides
 DEFAULT_FONT: Final = "times"
 PRIMES: Final = {"'": "\N{PRIME}", "''": "\N{DOUBLE PRIME}", "'''": "\N{TRIPLE PRIME}"}
 """Signs that these fonts have for primes, by how LaTeX writes them."""

@@ -23,8 +23,7 @@ FOLDERS: Final[dict[str, str]] = {
     "eppinger1988/loops": "Position and force loops around these models",
     "frames": "Plane frames, whose members bend and stretch",
     "tapers": "Sections, tensions and coefficients that vary along x",
-}
-"""What each folder holds; ``claims.toml`` is no model, see ``symflex.report.claims``."""
+}  # what each folder holds; ``claims.toml`` is no model, see ``symflex.report.claims``
 CLAIMS: Final = "claims.toml"
 LISTED: Final = "'symflex examples' lists them"
 _PACKAGE: Final = Path(__file__).parents[1]

@@ -34,8 +34,7 @@ NARROWEST = 1e-4  # shortest piece of a band whose magnitude is examined, as a s
 UNCHANGED = 1e-12  # change below which the radius of a ball is all there is
 LOST = 0.5  # displacement from which a root is no longer taken for the same one
 DECIBELS = 1.0  # difference in magnitude that statements are about: 12 %
-BESIDE = 1.05
-"""Ratio of frequencies up to which a part of the band is joined to a resonance or to a gap."""
+BESIDE = 1.05  # ratio of frequencies up to which a part of the band is joined to a resonance or to a gap
 SHOWN = 6  # number of parts of a band, or of roots, that a sentence lists
 
 

@@ -57,11 +57,9 @@ from symflex.transfer.probes import probes_of
 Exponents = dict[str, Fraction]  # a product of powers of quantities
 
 ONE: Final = Fraction(1)
-BASE: Final = ("m", "kg", "N/m", "kg*m^2", "N*m", "H", "F")
-"""Units of what groups are ratios to, first choices first."""
-DAMPERS: Final = ("N*s/m", "N*m*s", "Ohm")
-"""Units of damping, which serve in no base as long as there is another choice."""
-NAMES: Final = {
+BASE: Final = ("m", "kg", "N/m", "kg*m^2", "N*m", "H", "F")  # units that groups are ratios to, in this order
+DAMPERS: Final = ("N*s/m", "N*m*s", "Ohm")  # units of damping, in no base as long as there is another choice
+NAMES: Final = {  # names of groups, by the unit of what is divided
     "kg": ("mu", "mass ratio"),
     "N/m": ("kappa", "stiffness ratio"),
     "N*m": ("kappa", "stiffness ratio"),
@@ -69,7 +67,6 @@ NAMES: Final = {
     "m": ("lambda", "length ratio"),
     "s": ("tau", "time ratio"),
 }
-"""Names of groups, by the unit of what is divided."""
 BITS, ENOUGH = 192, 64  # precision at the test points, and how many bits of it have to agree
 
 

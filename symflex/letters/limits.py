@@ -57,8 +57,7 @@ Lead = tuple[Factored, Fraction, Mapping[Any, int]]
 ENDS: Final = ("0", "infinity")
 MINUS: Final = Number(Fraction(-1))
 ORDERS: Final = (8, 16, 32)  # powers of a wavenumber up to which kernels are expanded, one after the other
-STEPS: Final = (16, 32, 48)
-"""Binary orders of magnitude by which the points of a check lie beyond the scale of its parameters."""
+STEPS: Final = (16, 32, 48)  # binary orders by which a check's points lie beyond its parameters' scale
 FARTHER: Final = 8  # times as many without exponentials, whose values would have too many digits
 BITS: Final = 512
 CLOSE, WANING, NOTHING = 0.01, 0.75, 1e-30

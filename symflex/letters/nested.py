@@ -30,8 +30,7 @@ from symflex.print.forms.shapes import of_powers, plain, powers_of, rebuilt
 from symflex.transfer.enclose import enclose
 
 NUM, DEN = "", "/"
-Parts = dict[str, e.Expression]
-"""Numerator, denominator and the lines below, by their names."""
+Parts = dict[str, e.Expression]  # numerator, denominator and the lines below, by their names
 
 
 @dataclass(frozen=True, eq=False)

@@ -55,13 +55,11 @@ Way = tuple[TransferFunction, PrintedForm | None, Sequence[Image], tuple[float, 
 """A short function, its print, and the changes of a coefficient at the values and over the box."""
 
 MOST_NESTED = 4_000  # terms up to which every term of a print is compared over a box: in ten seconds
-MOST_TERMS = 20_000
-"""Terms of a numerator or denominator up to which its coefficients are compared, in about ten seconds."""
+MOST_TERMS = 20_000  # terms of a side up to which coefficients are compared, in about ten seconds
 FACTORED_TERMS = 120  # terms of a shortened polynomial up to which it is tried whether it has factors now
 BUDGETS = (1.0, 0.85, 0.7, 0.5, 0.35, 0.25, 0.15, 0.1, 0.05, 0.0)
 """Shares of the bound that are tried for each factor of a product."""
-COARSE = 0.002
-"""Shortest piece of a band, as a share of its logarithm, whose magnitude is examined over a box."""
+COARSE = 0.002  # shortest piece of a band, as a share of its logarithm, that is examined over a box
 TINY = 2.0**-60  # relative radius up to which a value counts as one number
 
 

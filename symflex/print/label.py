@@ -46,8 +46,7 @@ WIDEST_LABEL: Final = 12.0  # width in em beyond which a label gives way to the 
 _GREEK: Final = dict(zip(GREEK, "αβγδϵεζηθϑικλμνξπϖρϱσςτυϕφχψωΓΔΘΛΞΠΣΥΦΨΩ", strict=True))
 _ACCENTS: Final = dict(zip(ACCENTS, "˙¨¯^~→ˇ˘´`‾_", strict=True))
 _SYMBOLS: Final = dict(zip(SYMBOLS, "ℓℏ′∞⋆∗∘∥⊥∗†⋅×±∓…", strict=True))
-LABEL_SIGNS: Final = "".join((*_GREEK.values(), *_ACCENTS.values(), *_SYMBOLS.values()))
-"""Signs of labels beyond ASCII."""
+LABEL_SIGNS: Final = "".join((*_GREEK.values(), *_ACCENTS.values(), *_SYMBOLS.values()))  # signs beyond ASCII
 _NAMES: Final = ("ell", "hbar", "infty")  # symbols that are names in MathML, not operators
 _TEXT_FONTS: Final = {"text": "", "textrm": "", "textit": "it"}
 _DEEPEST: Final = 8

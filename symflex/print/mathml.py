@@ -224,8 +224,7 @@ MATHML: Final = Spelling(
 )
 
 
-WIDEST_FRACTION: Final = 42.0
-"""Width [em] beyond which numerator and denominator get names and rows of their own."""
+WIDEST_FRACTION: Final = 42.0  # width [em] beyond which numerator and denominator get names and rows
 LONGEST: Final = 400_000  # characters beyond which a page does not show a formula
 _CALLIGRAPHIC: Final = {r"\mathcal{N}": "𝒩", r"\mathcal{D}": "𝒟"}
 _OF_S: Final = (APPLY_FUNCTION, fence("<mi>s</mi>", 0, is_tall=False))

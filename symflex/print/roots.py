@@ -25,8 +25,7 @@ if TYPE_CHECKING:
 
 KINDS: Final = {"poles": "Poles", "zeros": "Zeros", "hidden": "Hidden roots"}
 """What a :class:`~symflex.roots.PoleZeroMap` holds, and the titles of tables of it."""
-SHORT_DIGITS: Final = 6
-"""Digits of roots in a terminal by default, and of frequencies and damping ratios there."""
+SHORT_DIGITS: Final = 6  # digits of roots, frequencies and damping ratios in a terminal by default
 _FREQUENCY_BITS: Final = 256
 
 
@@ -162,8 +161,7 @@ _TOLD_REAL: Final = replace(_REAL, text=lambda root, printed, digits: printed.re
 _TOLD_IMAGINARY: Final = replace(_IMAGINARY, text=lambda root, printed, digits: printed.readable.im)
 PAGE_COLUMNS: Final = (_TOLD_REAL, _TOLD_IMAGINARY, _RADIUS, _HERTZ, _RATIO, _TIMES)
 """Columns of tables on web pages."""
-PAPER_COLUMNS: Final = (_REAL, _IMAGINARY, _HERTZ, _RATIO)
-"""Columns of LaTeX tables; the multiplicity is a column there if one is not 1."""
+PAPER_COLUMNS: Final = (_REAL, _IMAGINARY, _HERTZ, _RATIO)  # in LaTeX; with the multiplicity if one is not 1
 MODE_COLUMNS: Final = (_HERTZ, _ANGULAR, _RATIO)  # columns of LaTeX tables of modes
 TERMINAL_COLUMNS: Final = (
     RootColumn("Re", (), "rad/s", _TOLD_REAL.text),
@@ -171,8 +169,7 @@ TERMINAL_COLUMNS: Final = (
     RootColumn("radius", (), "", _RADIUS.text),
     RootColumn("f", (), "Hz", lambda root, printed, digits: _frequency(root, SHORT_DIGITS, trimmed=True)),
     RootColumn("zeta", (), "", lambda root, printed, digits: _damping(root, SHORT_DIGITS, trimmed=True)),
-)
-"""Columns of tables in a terminal; in short lines the first two, the parts of s, are below each other."""
+)  # columns of tables in a terminal; in short lines the first two, the parts of s, are below each other
 
 
 def _loss_factor(root: Root, printed: RootDecimals, digits: int) -> str:
@@ -180,11 +177,10 @@ def _loss_factor(root: Root, printed: RootDecimals, digits: int) -> str:
     return "" if factor is None else _alone(factor, min(digits, SHORT_DIGITS), trimmed=True)
 
 
-LOSS_FACTORS: Final = {
+LOSS_FACTORS: Final = {  # what takes the place of a damping ratio where the model has loss factors
     "damping ratio": RootColumn("loss factor", ("Loss", "factor"), "", _loss_factor),
     "zeta": RootColumn("eta", (), "", _loss_factor),
 }
-"""What takes the place of a damping ratio where the model has loss factors."""
 
 
 def columns_for(columns: Sequence[RootColumn], roots: Sequence[Root]) -> list[RootColumn]:

@@ -215,8 +215,7 @@ def _split(text: str, breaks: Callable[[int], bool]) -> list[str]:
     return [*parts, text[start:]]
 
 
-_STOPS = compile_pattern(r"[()+\-/]|(?<=\*).")
-"""Characters at which a text may break, and those that open and close a group."""
+_STOPS = compile_pattern(r"[()+\-/]|(?<=\*).")  # where a text may break, and what opens and closes groups
 
 
 class Passage(NamedTuple):

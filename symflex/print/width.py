@@ -124,7 +124,7 @@ def _numerals(em: float) -> dict[str, Width]:
     return dict.fromkeys(digits, DIGIT_SIZES * (em / DIGIT))
 
 
-ITALIC: Final = Alphabet(
+ITALIC: Final = Alphabet(  # math italic
     _table(
         _LETTERS,
         "751 809 787 856 796 782 787 913 519 651 921 681 1080 913 791 781 791 768 671 724 792 806 1084 907 "
@@ -141,8 +141,7 @@ ITALIC: Final = Alphabet(
     {"d": "Y"},
     Width(0.056, 0.044, 0.035),
 )
-"""Math italic."""
-UPRIGHT: Final = Alphabet(
+UPRIGHT: Final = Alphabet(  # roman
     _table(
         _LETTERS,
         "751 709 723 764 681 653 785 751 362 514 778 626 917 751 778 681 778 760 556 723 751 764 1042 754 "
@@ -159,8 +158,7 @@ UPRIGHT: Final = Alphabet(
     {"I": "I", "a": "j", "g": "j"} | dict.fromkeys("bop", "ceodqj"),
     Width(0.056, 0.044, 0.035),
 )
-"""Roman."""
-TEXT_ITALIC: Final = Alphabet(
+TEXT_ITALIC: Final = Alphabet(  # italic of running text, for words in mathematics
     _table(
         _LETTERS,
         "744 807 861 850 799 786 861 908 544 666 915 652 1061 908 861 781 861 769 682 849 908 927 1183 902 "
@@ -177,12 +175,10 @@ TEXT_ITALIC: Final = Alphabet(
     dict.fromkeys("dlw", "l"),
     Width(0.052, 0.042, 0.03),
 )
-"""Italic of running text, for words in mathematics."""
 _ANY: Final = {c: widest(ITALIC.widths[c], UPRIGHT.widths[c], TEXT_ITALIC.widths[c]) for c in ITALIC.widths}
-OTHER_ALPHABETS: Final = Alphabet(
+OTHER_ALPHABETS: Final = Alphabet(  # bold, sans serif and calligraphic letters
     {c: width * 1.2 for c, width in _ANY.items()}, {**UPRIGHT.apart, **TEXT_ITALIC.apart}, UPRIGHT.kern * 1.2
 )
-"""Bold, sans serif and calligraphic letters."""
 TYPEWRITER: Final = 0.53
 _SIGNS: Final = {c: 0.78 for c in punctuation} | {c: 0.39 for c in "()[].,:;'!`-"} | {" ": 0.34}
 ROMAN: Final = {c: width.text for c, width in UPRIGHT.widths.items()} | _SIGNS

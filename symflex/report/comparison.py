@@ -125,7 +125,7 @@ def bandwidth_cell(facts: ModelFacts) -> Iterator[Run]:
 
 ComparisonColumn = tuple[Callable[[ModelFacts], Iterable["Run"]], Side]
 """What returns the cell of a model's row, lines that end, and how its column stands."""
-COLUMNS: dict[str, ComparisonColumn] = {
+COLUMNS: dict[str, ComparisonColumn] = {  # columns of the table of structures, by their heads and in order
     "Model": (model_cell, "plain"),
     "Flexibility": (flexibility_cell, "text"),
     "Modes": (modes_cell, "number"),
@@ -133,19 +133,16 @@ COLUMNS: dict[str, ComparisonColumn] = {
     "Minimum phase": (phase_cell, "text"),
     "Colocated or not": (both_cell, "text"),
 }
-"""Columns of the table of structures, by their heads and in order."""
-DATA_COLUMNS: dict[str, ComparisonColumn] = {
+DATA_COLUMNS: dict[str, ComparisonColumn] = {  # columns of the table of models with measured responses
     "Model": (model_cell, "plain"),
     "Off the data by": (data_cell, "text"),
 }
-"""Columns of the table of models with measured responses."""
 LOOP_COLUMNS: dict[str, ComparisonColumn] = {
     "Model": (model_cell, "plain"),
     "Outputs together up to": (together_cell, "text"),
     "Loop stable for": (loop_cell, "text"),
     "Crossover allowed": (bandwidth_cell, "text"),
-}
-"""Columns of what matters to control: models with loops, or with outputs here and elsewhere."""
+}  # columns of what matters to control: models with loops, or with outputs here and elsewhere
 
 
 def comparison_section(models: Sequence[ModelFacts]) -> Section | None:

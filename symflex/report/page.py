@@ -38,8 +38,7 @@ DEEPEST_HEADING: Final = 6
 CONTENTS_DEPTH: Final = 2
 PAIR: Final = 2  # columns up to which a table with text is narrow enough for every screen
 WIDE: Final = 6  # columns from which a table with text may be wider than the column of text
-LONG_INLINE: Final = 600
-"""Characters of mathematics in a sentence from which it may be wider than a telephone."""
+LONG_INLINE: Final = 600  # characters of mathematics in a sentence that may be wider than a telephone
 MATH_FONT: Final = "fonts/symflex-math.woff2"
 _FONT_FACE: Final = (
     '@font-face{{font-family:"symflex math";src:url(data:font/woff2;base64,{}) format("woff2")}}'

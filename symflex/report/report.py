@@ -49,11 +49,9 @@ from symflex.sweep.run import end_with_parent
 
 MOST_MODELS: Final = 200
 TICK: Final = 0.5  # seconds between two reports of progress while nothing ends
-CHAPTERS: Final = 0.8
-"""Part of the time after which chapters end with what they have, so that there is some for writing."""
+CHAPTERS: Final = 0.8  # part of the time after which chapters end, so that there is some for writing
 WAITING: Final = 0.9  # part of the time after which those that do not end are no longer waited for
-DATA_SUFFIXES: Final = frozenset((".csv", ".tsv", ".npz", ".mat", ".uff", ".unv"))
-"""Endings of the data files that are looked for in folders."""
+DATA_SUFFIXES: Final = frozenset((".csv", ".tsv", ".npz", ".mat", ".uff", ".unv"))  # looked for in folders
 LIBRARIES: Final = ("python-flint", "numpy", "scipy", "sympy", "mpmath", "matplotlib")
 TABLES: Final = {"claims": "Every claim with its verdict", "comparison": "All models in a table"}
 """What stands for the tables of a report until a reader opens them, by their anchors."""

@@ -176,8 +176,7 @@ def _points(expression: Expression, unknowns: tuple[str, ...]) -> set[str]:
 
 Values = tuple[tuple[str, "Expression"], ...]
 Counts = tuple[int, int]  # zeros and poles
-RigidCounts = tuple[int | None, int]
-"""The same; no zeros are counted where the function itself vanishes, or grows without bound."""
+RigidCounts = tuple[int | None, int]  # the same; no zeros of a function that vanishes, or grows without bound
 RESONANCES: Final = ("omega_p", "omega_z")  # what grows in a resonance block as compliances become rigid
 
 

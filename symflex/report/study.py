@@ -32,8 +32,7 @@ if TYPE_CHECKING:
     from symflex.data.measurement import MeasuredResponse
 
 
-MOST_FUNCTIONS: Final = 24
-"""Transfer functions of one model that a report shows; the number of those it leaves out is said."""
+MOST_FUNCTIONS: Final = 24  # functions of a model that a report shows; the number left out is said
 DIGITS: Final = 15
 MODES: Final = 5
 TOO_LARGE: Final = "the closed form is too large"

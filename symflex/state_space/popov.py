@@ -34,8 +34,7 @@ Key = tuple[int, int]  # a column and a power of s. Unknowns come first, then in
 
 Position = TypeVar("Position", Key, int)
 
-Row = dict[Key, "FieldElement"]
-"""A sum of ``coefficient * s^power * column``, without coefficients that are zero."""
+Row = dict[Key, "FieldElement"]  # a sum of ``coefficient * s^power * column``, without coefficients 0
 
 DERIVATIVE = 4  # what a derivative adds to the weight of an unknown
 SIZE_LIMIT = 100_000  # terms that the coefficients of one row may contain together

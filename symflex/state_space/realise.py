@@ -47,11 +47,8 @@ DISPLACEMENT, FLOW, VOLTAGE, SIGNAL = 0, 5, 6, 7
 (4) are states rather than currents and forces (5), these rather than voltages and signals, all of them rather
 than accelerations (8); and a current's derivative (9) follows from voltages and signals."""
 
-PARTIAL = "partial"
-"""The component that a filter's partial state has: what drives it over its denominator (Wolovich 1974)."""
-
-REST = "_rest"
-"""What is added to the name of a state from which a part that follows inputs directly is taken away."""
+PARTIAL = "partial"  # a filter's partial state: what drives it over its denominator (Wolovich 1974)
+REST = "_rest"  # added to the name of a state from which a part that follows inputs directly is taken away
 
 THROUGH_UNITS = {**COMPONENT_UNIT, "v": "V"}
 RATES = {"m": ("m", "m/s", "m/s^2"), "rad": ("rad", "rad/s", "rad/s^2")}
@@ -470,8 +467,7 @@ def _followed(
     return {power: row for power, row in total.items() if row}
 
 
-Combination = tuple[tuple["Expression", FieldElement], ...]
-"""A sum of quantities of the model, each with its coefficient."""
+Combination = tuple[tuple["Expression", FieldElement], ...]  # a sum of quantities, with coefficients
 
 
 @dataclass(frozen=True, slots=True)

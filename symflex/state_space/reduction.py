@@ -24,8 +24,7 @@ from symflex.state_space.realise import Combination, State, StateSpace
 
 SIZE_LIMIT = 5_000  # terms that a basis may hold on the way
 
-LARGEST = 1000
-"""Numerators and denominators up to this size are looked for before anything is solved with symbols."""
+LARGEST = 1000  # largest numerators and denominators looked for before anything is solved with symbols
 
 Basis = dict[int, Vector]  # vectors in reduced echelon form, by pivot
 FEW = 2  # terms of a combination that is named after them

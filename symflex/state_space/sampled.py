@@ -37,11 +37,9 @@ if TYPE_CHECKING:
 
 Balls = Callable[[int], tuple[arb_mat, ...]]  # a, B, C and D in balls of so many bits
 FIRST_BITS, LAST_BITS = 192, 6144
-NOTHING_BITS = 150
-"""An entry this many bits smaller than the largest counts as zero if its sign cannot be decided."""
+NOTHING_BITS = 150  # an entry so many bits below the largest counts as zero if its sign cannot be decided
 MOST_SAMPLES = 1000  # largest delay in samples: it takes as many states
-METHODS = ("zoh", "tustin", "matched")
-"""Zero-order hold, bilinear transformation, and roots matched, which is of one transfer function."""
+METHODS = ("zoh", "tustin", "matched")  # zero-order hold, bilinear, and roots matched, of one function
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,8 +32,7 @@ Scale = Literal["lin", "log"]
 Point = tuple[ExactValue, ...]
 
 POINTS_LIMIT = 1_000_000  # points of one sweep
-DIGITS = 15
-"""Significant digits of values between limits: as many as a double distinguishes, so files contain all."""
+DIGITS = 15  # significant digits of values between limits, all that a double distinguishes, so files have all
 WORKING_DIGITS = 40
 
 
@@ -188,8 +187,7 @@ class Task:
     gain: str = ""  # of margins
 
 
-Solver = Callable[[Sequence[Point]], Rows]
-"""Computes rows of results for points: arrays whose first axis counts them."""
+Solver = Callable[[Sequence[Point]], Rows]  # computes rows of results: arrays whose first axis counts points
 
 
 def fingerprint(task: Task) -> str:

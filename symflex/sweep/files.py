@@ -42,8 +42,7 @@ ARRAYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "zeros": ((MODE,), _ROOTS),
     "response": ((FREQUENCY,), ("re", "im")),
     "margins": ((), (*MARGINS, "stable")),
-}
-"""The axes that arrays have besides that of points, and their names, by what is swept."""
+}  # the axes that arrays have besides that of points, and their names, by what is swept
 
 
 def archive(arrays: Mapping[str, Array]) -> bytes:
@@ -151,13 +150,12 @@ def _table(sweep: Sweep) -> tuple[list[str], list[Array]]:
     return list(columns), list(columns.values())
 
 
-WRITERS: dict[str, Callable[[Sweep], bytes]] = {
+WRITERS: dict[str, Callable[[Sweep], bytes]] = {  # writers by the ending of a file's name
     ".nc": netcdf_bytes,
     ".npz": npz_bytes,
     ".csv": csv_bytes,
     ".parquet": parquet_bytes,
 }
-"""Writers by the ending of a file's name."""
 
 
 def check_writable(path: Path) -> None:

@@ -35,10 +35,8 @@ Between = Callable[[int, int, int], Sequence[Complexes] | None]
 """A function from two points and a number of pieces to the roots where pieces meet, or ``None``."""
 Integers = npt.NDArray[np.int64]
 
-CLEAR = 2.0
-"""Paths are distinct when they stay further apart than this many times the errors of what was foretold."""
-LINE, FACTOR = 0.25, 0.5
-"""What was foretold along a line, or by one factor, is trusted no further than to these shares of a move."""
+CLEAR = 2.0  # distinct paths stay further apart than so many times the errors of what was foretold
+LINE, FACTOR = 0.25, 0.5  # foretold along a line, or by a factor: trusted up to these shares of a move
 FAR = 1.5  # a root further in ln(s) from where any was foretold has a name of its own
 MEETING = 1e-9  # closer than this in ln(s), paths meet
 NEIGHBOURS = 32  # nearest draws that are looked through for one closer to the middle, before all are

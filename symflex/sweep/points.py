@@ -105,8 +105,7 @@ REMEMBERED = 256  # points that stand for all similar ones, of which so many are
 FAMILY_BYTES = 7
 
 
-VERDICTS = ("unknown", "unstable", "marginal", "stable")
-"""Words of :class:`~symflex.roots.pole_zero_map.StabilityVerdict`, as an array numbers them."""
+VERDICTS = ("unknown", "unstable", "marginal", "stable")  # words of StabilityVerdict, by number
 UNKNOWN, STABLE = 0, 3
 
 

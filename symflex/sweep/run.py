@@ -123,8 +123,7 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
 CHUNKS = 200  # into about how many a sweep is cut
 LARGEST_CHUNK = 1000
 AHEAD = 4  # chunks per worker that are handed out before any is back
-MOST_BETWEEN = (40, 400)
-"""Points solved between others, where names are in doubt: a tenth of all, at least and at most these."""
+MOST_BETWEEN = (40, 400)  # points solved between others, where names are in doubt: a tenth, within these
 MINUTE = 60.0
 HOUR = 3600.0
 

@@ -20,14 +20,12 @@ from symflex.codegen.module_text import identifiers, statement_lines
 from symflex.codegen.program import nodes as tree
 from symflex.codegen.program.evaluate import nearest_double
 
-FEW, DEEPEST = 3, 3
-"""Powers up to which are products, and calls nested in each other from which a variable is made."""
+FEW, DEEPEST = 3, 3  # powers up to this are products; from as many nested calls a variable is made
 _SUM, _PRODUCT, _SIGN, _LEAF = range(4)
 
-REAL_FUNCTIONS = {
+REAL_FUNCTIONS = {  # what C calls each of the elementary functions of a real number
     name: name for name in ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh")
 } | {"complex_exp": "exp"}
-"""What C calls each of the elementary functions of a real number."""
 
 
 LANE_FUNCTIONS = ("tan", "exp")  # functions of real numbers that there are without branches
@@ -194,8 +192,7 @@ KEYWORDS = frozenset(
     reinterpret_cast requires static_cast template this throw try typeid typename using virtual wchar_t xor
     xor_eq
     """.split()
-)
-"""Keywords of C up to C23, of C++, whose programs include the header, and of compilers for small machines."""
+)  # keywords of C up to C23, of C++, whose programs include the header, and of compilers for small machines
 
 MACROS = frozenset(
     """
@@ -229,7 +226,7 @@ MACROS = frozenset(
 """Of the headers that the code includes, of compilers that define names without underscores, and of headers
 that firmware and Windows programs often include first."""
 
-FUNCTIONS = frozenset(
+FUNCTIONS = frozenset(  # what the code calls, and the types it uses
     """
     main size_t ptrdiff_t
     sqrt exp log log2 ldexp ceil fmax fmin sin cos tan sinh cosh tanh fabs hypot pow copysign
@@ -237,7 +234,6 @@ FUNCTIONS = frozenset(
     memcpy uint64_t rint
     """.split()
 ).union(*PARTS)
-"""What the code calls, and the types it uses."""
 LOCALS = frozenset("s p omega n i j w x g re im real imag sign value padded near is_near count".split())
 """Arguments and variables that every function has under these names."""
 RESERVED = KEYWORDS | MACROS  # what a member of the structure of parameters cannot be called

@@ -45,25 +45,20 @@ from symflex.transfer import AnyBoundFunction, AnyTransferFunction, BoundNested,
 from symflex.transfer.bound import Enclosed
 from symflex.transfer.nested_form import EnclosedNested
 
-CLOSED_TERMS = 60
-"""Terms with kernels up to which a formula is short: twice as many are some hundred kilobytes of code."""
+CLOSED_TERMS = 60  # terms with kernels of a short formula: twice as many are some hundred kilobytes
 BEYOND, FURTHER, ENOUGH = 5, Fraction(3, 2), Fraction(6, 5)
 """How far beyond the band roots are found: in modes, and in frequencies of a band given in Hz; and how
 far beyond it the highest of as many zeros as poles has to lie."""
 
 ROUNDS = 3  # how often roots are sought further away where what they leave is not smooth
 DIGITS = 36  # digits of the roots: more than two doubles hold
-FIRST_NODES, MOST_NODES = 24, 192
-"""Points on the positive half of the band at which what is left is taken; the next try has twice as many."""
+FIRST_NODES, MOST_NODES = 24, 192  # points on the band's positive half for what is left; doubled at each try
 SPARE, NEGLIGIBLE = 4, 2.0**-57
 """Last coefficients that count for nothing where there were points enough: their size changes no double."""
 GROUP = 12  # zeros, and poles, that are multiplied before their products are divided: a division costs more
-BITS = 160
-"""Precision in which coefficients are summed: that of two doubles, and as much again for what cancels."""
-SLACK = 2.0**-40
-"""How far beyond the band's end a rounded frequency may be, relatively; further away values are NaN."""
-LUMPED_END = Fraction(10_000)
-"""End of the band [Hz] of a function with finitely many roots where nothing says another one."""
+BITS = 160  # precision in which coefficients are summed: two doubles, and as much for what cancels
+SLACK = 2.0**-40  # how far beyond the band's end a rounded frequency may be, relatively; beyond it is NaN
+LUMPED_END = Fraction(10_000)  # end of the band [Hz] of a lumped function where nothing says another
 
 
 FIRST_BITS, LAST_BITS, ENOUGH_BITS = 128, 4096, 64

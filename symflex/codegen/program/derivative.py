@@ -89,8 +89,7 @@ _SLOPES: Final[dict[str, Callable[[tree.CodeNode, tree.CodeNode], tree.CodeNode]
     "cosh": lambda node, x: tree.Apply("sinh", x),
     "tan": lambda node, x: tree.Add((tree.ONE, tree.Multiply((node, node)))),
     "tanh": lambda node, x: tree.Add((tree.ONE, tree.Negate(tree.Multiply((node, node))))),
-}
-"""Derivatives of elementary functions, from ``node``, the function of x, and x."""
+}  # derivatives of elementary functions, from ``node``, the function of x, and x
 
 
 def _of_composed(node: tree.CodeNode, assigned: dict[str, tree.CodeNode | None]) -> tree.CodeNode | None:

@@ -50,19 +50,15 @@ from symflex.errors import BudgetError, Diagnostic
 from symflex.transfer import TransferFunction
 from symflex.transfer.lowest_terms import cancel
 
-REACHES = (3.0, 2.0, 4.5)
-"""Sizes of the largest exponent below which series are used; which serves best is measured."""
+REACHES = (3.0, 2.0, 4.5)  # sizes of the largest exponent below which series are used; the best is measured
 CHOOSING, TOGETHER = 3, 2
 """Base lengths up to which every one may have series by itself, eight pieces for three of them, and those up
 to which that is not more than a module should hold; of more it is measured whether it serves."""
 
 CUTS = 12  # how often one base length is cut by another; two spans and a sensor need one or two
-LOCAL_TERMS = 30_000
-"""Terms looked at while series for small arguments are made free of wavenumbers: some ten seconds."""
-REAL_TERMS = 1000
-"""Terms of numerator and denominator up to which a program in real arithmetic is made besides."""
-LOWEST, HIGHEST, STEPS = 1e-9, 1e12, 4000
-"""Frequencies [rad/s] at which it is looked which arguments are small together."""
+LOCAL_TERMS = 30_000  # terms looked at while series for small arguments lose wavenumbers: some ten seconds
+REAL_TERMS = 1000  # terms above and below the bar up to which a program in real arithmetic is made besides
+LOWEST, HIGHEST, STEPS = 1e-9, 1e12, 4000  # frequencies [rad/s] that show which arguments are small together
 CONFLUENT, CIRCLE = 2.0, 24
 """Twice the squared distance of a pair's arguments below which means over a circle are taken, and points."""
 LONE = 0.25  # part of the series' reach up to which the smaller of a pair's arguments has a series by itself

@@ -29,10 +29,9 @@ if TYPE_CHECKING:
 
 CONSTANT_BITS = 256  # precision of powers of pi before they are rounded to a double
 
-NUMPY_FUNCTIONS = {
+NUMPY_FUNCTIONS = {  # what numpy calls each of the elementary functions, and the magnitude
     name: name for name in ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh", "abs")
 } | {"complex_sqrt": "sqrt"}
-"""What numpy calls each of the elementary functions, and the magnitude."""
 
 
 def nearest_double(value: Fraction, pi_power: int = 0) -> float:

@@ -32,8 +32,7 @@ Term = tuple[tuple[tuple[int, int], ...], int]
 is positive."""
 
 Key = tuple[Term, ...]  # one term per family
-KernelSum = dict[Key, "fmpz_mpoly"]
-"""Products of terms with their coefficients, which are free of the kernels that have families."""
+KernelSum = dict[Key, "fmpz_mpoly"]  # products of terms, with coefficients free of kernels in families
 Powers = tuple[tuple[str, int], ...]  # functions of one argument, and exponents
 
 

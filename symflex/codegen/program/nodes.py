@@ -27,8 +27,7 @@ if TYPE_CHECKING:
 class CodeNode:
     """Base of all nodes; in the table of a forge operands are numbers of nodes, which stand before."""
 
-    OPERANDS: ClassVar[tuple[str, ...]] = ()
-    """The fields that contain operands, or tuples of them: nodes, by their types."""
+    OPERANDS: ClassVar[tuple[str, ...]] = ()  # the fields that contain operands, or tuples of them
 
     def __init_subclass__(cls) -> None:
         own = tuple(name for name, kind in cls.__annotations__.items() if "CodeNode" in kind)

@@ -31,8 +31,7 @@ if TYPE_CHECKING:
 
 
 Monomial = tuple[int, ...]
-Terms = dict[Monomial, int]
-"""Exponents of the generators, and what stands in front: an integer, or an expression on the forge."""
+Terms = dict[Monomial, int]  # generators' exponents, with an integer or an expression on the forge
 
 
 @dataclass(frozen=True)

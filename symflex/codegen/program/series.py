@@ -98,8 +98,7 @@ def pair_basis(exponents: Iterable[Sequence[tuple[int, int]]]) -> LocalBasis:
     return LocalBasis(1, order, own)
 
 
-SYMMETRIC = Ring(("x", "e", "f"))
-"""The ring of polynomials in x, ``e = lambda_1^2 + lambda_2^2`` and ``f = lambda_1^2 lambda_2^2``."""
+SYMMETRIC = Ring(("x", "e", "f"))  # x, ``e = lambda_1^2 + lambda_2^2``, ``f = lambda_1^2 lambda_2^2``
 
 
 def _orbit(a: int, b: int) -> fmpz_mpoly:

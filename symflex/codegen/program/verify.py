@@ -28,11 +28,9 @@ from symflex.transfer.bound import EnclosedTransferFunction
 from symflex.transfer.of_model import derive_for_roots, derive_nested
 
 DEFAULT_BAND = (Fraction(1, 10), Fraction(10_000))  # hz
-MOST_WAVES = 300.0
-"""Size of the largest exponent of a member that tapers up to which the error is measured by default."""
+MOST_WAVES = 300.0  # largest exponent of a tapered member up to which the error is measured by default
 SAMPLES = 400  # frequencies at which the error is measured, besides those around poles and zeros
-ASIDE = (0.0, 1e-9, 1e-6, 1e-3, 1e-2)
-"""Relative distances from a pole's or zero's frequency at which the error is measured as well."""
+ASIDE = (0.0, 1e-9, 1e-6, 1e-3, 1e-2)  # distances from a root, relatively, where the error is measured too
 REACH = np.logspace(-9, 12, 85)  # frequencies [rad/s] at which a form may neither overflow nor lose the value
 SIMILAR, MUCH_LONGER = 2.0, 2
 """Forms whose errors differ by less than this factor count as equally accurate, and the faster one is taken;
@@ -49,14 +47,11 @@ LIGHT_NESTED, LEAST = 600, 0.05
 at in any case; of a network of beams a value takes 10 ms and more."""
 
 NAMED = 6  # parameters without value that are named
-BESIDE_ROOTS = (0.0, 1e-9, 1e-4)
-"""Relative distances from a root's frequency at which a band form is measured: it has all digits of each."""
-BAND_SHARE = 8
-"""One in so many of the usual samples shows how smooth the rest of a band form with known roots is."""
+BESIDE_ROOTS = (0.0, 1e-9, 1e-4)  # distances from a root, relatively, at which a band form is measured
+BAND_SHARE = 8  # one in so many samples shows how smooth the rest of a band form with known roots is
 ASIDE_OF_AXIS, HEIGHTS = 0.1, np.linspace(0.02, 0.98, 5)
 """Distance from the imaginary axis, and heights, in bands, at which a band form is measured too."""
-AT_A_POLE = 1e-14
-"""Relative distance from a pole's frequency within which infinity may stand for the value: some roundings."""
+AT_A_POLE = 1e-14  # distance from a pole, relatively, at which infinity may stand for the value
 TINY = 1e-307  # what is smaller has no more digits in double precision
 
 

@@ -18,7 +18,7 @@ from symflex.along import doubles
 from symflex.codegen.export import called_parts, parts_of
 from symflex.codegen.program import evaluate
 
-COPIED = (
+COPIED = (  # functions with which programs are measured; modules get copies where they have no others
     evaluate.complex_exp,
     evaluate.series_solutions,
     doubles.fundamental_minors,
@@ -44,7 +44,6 @@ COPIED = (
     evaluate.scaled_sum,
     evaluate.mean_over_circle,
 )
-"""Functions with which programs are measured; modules get copies where they have no others."""
 _COPIES = ("copies",)
 _OWN = "|".join(f.__name__ for f in COPIED)  # names of functions that call each other
 

@@ -25,14 +25,13 @@ from symflex.codegen.python.dialects import ARRAY_API_DIALECT, JAX_DIALECT, NUMP
 from symflex.codegen.python.pieces import WIDTH, BlockText, PrivateText, TracedText, in_pieces, statement
 from symflex.model import Model, ModelParameter
 
-LINTS = {
+LINTS = {  # rules of ruff that modules do not follow, whose names and texts are the model's
     "numpy in pieces": "E501, E741, N802, N803, N806, PLR0915, RUF001, RUF002, RUF100, "
     "ANN001, ANN201, ANN202, N816, PLR0912, PLR0914, PLR1704, PLR2004",
     "numpy": "E501, E741, N802, N803, N806, PLR0915, RUF001, RUF002, RUF100, ANN001, ANN202",
     "traced": "ANN001, ANN201, ANN202, ANN401, B905, E501, E741, N802, N803, N806, N816, PLR0912, PLR0914, "
     "PLR0915, PLR2004, PLW2901, RUF001, RUF002, RUF005, RUF100",
 }
-"""Rules of ruff that modules do not follow, whose names and texts are the model's."""
 LITERAL_WIDTH = 60  # characters of a string literal on one line
 
 MEASURED = (

@@ -392,8 +392,7 @@ def statement(target: str, value: str, indent: str) -> list[str]:
     return [f"{opening}(", *lines, f"{indent})"]
 
 
-Cases = tuple[tuple[tuple[int, bool], ...], ...]
-"""Alternatives; each is a number of tests with the results they must have."""
+Cases = tuple[tuple[tuple[int, bool], ...], ...]  # alternatives: tests with the results they must have
 SIZES = np.logspace(-12, 60, 145)
 DIRECTIONS: NDArray[np.complex128] = np.exp(1j * np.array([0.9, -0.9, 2.2, -2.2]))
 """Frequencies [rad/s] and directions, one in every quadrant and on no axis, among which places are sought."""

@@ -82,25 +82,21 @@ AS_ARRANGED = ("zpk", "frequency")  # those that are not functions of s, or prin
 LARGE = 300  # number of expanded terms from which only the closed form is tried: no expanded print is shorter
 CANDIDATES = ("definitions", "factored", "polynomial")
 """The symbolic forms of rational functions; the shortest print is the default, ties go to the first."""
-DISTRIBUTED_CANDIDATES: dict[str, Begin] = {
+DISTRIBUTED_CANDIDATES: dict[str, Begin] = {  # the same for functions with kernels
     "hyperbolic": hyperbolic_draft,
     "factored": factored_draft,
     "vaughan": _later("vaughan", "draft"),
     "krylov": _later("krylov", "draft"),
 }
-"""The same for functions with kernels."""
-LONG = 200
-"""Characters of a form from which sums of blocks are left as they are written, where that is much shorter."""
+LONG = 200  # characters of a form from which sums of blocks stay as written, where that is much shorter
 SHORTER = 1.5  # how many times as long a form of one fraction has to be
 READABLE = 10**20  # a whole number beyond which a function without parameters is printed in decimals, as zpk
 CLOSED = 1.1  # how many times shorter a lumped form has to read with its definitions closed
-LOOKED_UP = 1.2
-"""How many times as long functions read that have to be looked up, ``K_1`` for ``sinh(q)/gamma``."""
+LOOKED_UP = 1.2  # how many times as long functions read that have to be looked up, such as ``K_1``
 SHARED = 5  # characters that a factor before a sum is worth which all its terms have
 FEW = 60  # terms up to which every form is arranged: that takes some hundredths of a second
 ONE_LINE = 60  # characters of a denominator beyond which functions that share it print it once
-MORE = 1.25
-"""How many times the terms of the form with the fewest another one may have, and still print shorter."""
+MORE = 1.25  # how many times the fewest terms another form may have, and still print shorter
 
 
 def print_form(

@@ -50,8 +50,7 @@ from symflex.transfer.derive import ClosedDefinitions
 from symflex.transfer.of_model import UNASKED
 
 GROUP_LIMIT = 5_000  # number of terms up to which a polynomial is nested for print
-DEEPEST_NEST = 60
-"""Degree in all parameters up to which a sum is nested: each level of print takes out one of them."""
+DEEPEST_NEST = 60  # degree in all parameters up to which a sum is nested: each level takes out one
 FACTOR_LIMIT = 400  # number of terms up to which a coefficient is factored for print
 
 

@@ -27,8 +27,7 @@ from symflex.transfer import TransferFunction
 DOUBLINGS = 8  # halvings that are undone at most
 LARGE = 300  # number of terms of a factor from which it is left as it is
 MOST = 5  # number of lengths of one wavenumber up to which sums of them are tried
-HALVES = 4
-"""Multiple of an argument up to which its own kernels read as well: those of a beam and of its middle."""
+HALVES = 4  # multiple of an argument up to which its kernels read as well: a beam's and its middle's
 TWO = 2
 
 

@@ -44,8 +44,7 @@ from symflex.print.forms.notation import (
 from symflex.print.forms.printed import NOT_ENTIRE, PrintedForm, lacks
 from symflex.transfer import TransferFunction
 
-LONGEST_ARGUMENT = 10
-"""Characters of what is printed within cosh, sinh, cos and sin: ``beta_2*l_2``, ``beta*l/2``."""
+LONGEST_ARGUMENT = 10  # characters printed within cosh, sinh, cos and sin: ``beta_2*l_2``
 
 
 def frequency_form(tf: TransferFunction) -> PrintedForm:

@@ -24,8 +24,7 @@ from symflex.print.forms.notation import Angle, angles_of, coefficient_name
 from symflex.transfer.expansion import compose_rational
 
 if TYPE_CHECKING:
-    Groups = Sequence[tuple[int, tuple[Angle, ...]]]
-    """Angles of one dispersion, by the number of their argument."""
+    Groups = Sequence[tuple[int, tuple[Angle, ...]]]  # angles of one dispersion, by their argument's number
     Step = tuple[fmpz_mpoly, Factored] | None
     """A polynomial with some kernels written in the K, and what it is to be multiplied by."""
 

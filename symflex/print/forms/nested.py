@@ -54,8 +54,7 @@ DEEPEST = 8  # levels of an expression from which it gets a name
 LONGEST_PRODUCT = 24  # factors beyond which a product is continued in a line of its own
 SHORT = 3  # factors up to which a product of parameters is written out wherever it occurs
 LONGEST_SUM = 100  # terms beyond which a sum is
-BAR = 20
-"""Characters that a fraction within a side may save, and of a product that needs no line to be used once."""
+BAR = 20  # characters that a fraction within a side may save, and of a product used once without a line
 STEMS = {Step.ADD: "S", Step.MULTIPLY: "P", Step.DIVIDE: "T", Step.POWER: "P"}
 """Names of shared sums, products and quotients; ``w`` and ``Z`` are what the elimination calls so."""
 

@@ -106,10 +106,8 @@ def terms_of(value: Factored) -> int:
     return sum(len(factor) for factor, _ in value.factors)
 
 
-Arrange = Callable[..., PrintedForm]
-"""A function that arranges a transfer function; one that prints decimals takes their digits, too."""
-Begin = Callable[..., BegunForm | None]
-"""A function that begins a form of a transfer function; ``None`` if it is no other than the first one."""
+Arrange = Callable[..., PrintedForm]  # arranges a transfer function; one that prints decimals takes digits
+Begin = Callable[..., BegunForm | None]  # begins a form; ``None`` if it is no other than the first one
 RATIONAL = ("definitions", "factored", "polynomial", "monic", "constant", "zpk", "frequency")
 """The forms of a rational function."""
 DISTRIBUTED = ("hyperbolic", "factored", "krylov", "vaughan", "frequency", "polynomial")

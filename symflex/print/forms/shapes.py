@@ -58,8 +58,7 @@ LARGEST: Final = 4000  # parts of a form up to which it is shaped: nobody reads 
 FAR: Final = 1e60  # a frequency at which every sum has the sign of its highest power of s
 DIGITS: Final = 7  # significant digits of a decimal that reads better than a shorter whole number elsewhere
 MOST: Final = 15  # the same where whole numbers have as many
-FEW_DOUBLES: Final = 2
-"""Numbers of more digits in a model that are printed with all of them, such as 1/60 as a double."""
+FEW_DOUBLES: Final = 2  # so many longer numbers in a model are printed in full, such as 1/60 as a double
 TOO_LONG: Final = 10**30  # a whole number in which nobody looks for numbers as they were typed
 LARGE: Final = 10**5  # a whole number from which a polynomial in s reads better with s^n alone in front
 MORE: Final = 1.3  # how many times as long a form with decimals may be

@@ -30,8 +30,7 @@ from symflex.transfer import AnyTransferFunction, HiddenFactor, TransferFunction
 if TYPE_CHECKING:
     from symflex.roots import PoleZeroMap
 
-TEXT_WIDTH_MM: Final = COLUMNS_MM["a4"]
-"""Width of the text of the document, and of fragments unless asked otherwise."""
+TEXT_WIDTH_MM: Final = COLUMNS_MM["a4"]  # width of the document's text, and of fragments by default
 DOCUMENT: Final = "document.tex"  # name of the file of a document that is compiled
 _LONGEST_HIDDEN: Final = 0.5
 _COUNTS: Final = "no one two three four five six seven eight nine ten eleven twelve".split()

@@ -27,8 +27,7 @@ LONGEST_IN_NOTEBOOK: Final = 20_000
 _LINES_PER_DISPLAY: Final = 300
 _TAG: Final = 2.9  # a number of three digits and the least room before it
 _PARENTHESES: Final = 0.781
-_Sides = tuple[str, float, "Expression"]
-"""The left side of an equation with its width [em], and the right one."""
+_Sides = tuple[str, float, "Expression"]  # left side of an equation with its width [em], and the right one
 _WHERE: Final = r"\text{where}\quad "
 _WHERE_WIDTH: Final = 3.57
 _LEAST_ROOM: Final = 17.5

@@ -8,10 +8,8 @@ from typing import Final
 
 from symflex.errors import Diagnostic, UsageError
 
-COLUMNS_MM: Final = {"ieee": 88.5, "a4": 170.0}
-"""A column of IEEE journals (252 points) and the text of a page of A4 with margins of 20 mm [mm]."""
-NARROWEST_MM: Final = 80.0
-"""Narrowest column for formulas of ten points; in a narrower one they need more than one column."""
+COLUMNS_MM: Final = {"ieee": 88.5, "a4": 170.0}  # [mm]; IEEE journals: 252 points, A4: margins of 20 mm
+NARROWEST_MM: Final = 80.0  # narrowest column in which formulas of ten points need only one column
 WIDEST_MM: Final = 1000.0
 _MILLIMETRES: Final = re.compile(r"([0-9]{1,6}(?:\.[0-9]{1,6})?) ?(?:mm)?")
 

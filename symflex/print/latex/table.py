@@ -29,8 +29,7 @@ if TYPE_CHECKING:
 
 
 VALUE_DIGITS: Final = 7  # significant digits of a value that is not a shorter decimal
-ROOT_DIGITS: Final = 6
-"""Significant digits of a root, where its radius certifies them and the column has room."""
+ROOT_DIGITS: Final = 6  # significant digits of a root, if its radius certifies them and the column has room
 LONGEST_MEANING: Final = 400  # characters of a description that a table prints; a row must fit a page
 _FEWEST_DIGITS: Final = 3
 _PI: Final = Fraction("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899")
@@ -203,8 +202,7 @@ def _cell(column: RootColumn, entry: PrintedRoot, decimal: str) -> str:
 
 
 LINES_PER_PART: Final = 40  # a table with more lines is set in parts
-SIZES: Final = (("", 1.0), (r"\small", 0.93), (r"\footnotesize", 0.86))
-"""Commands, and how wide letters are then, of those of ten points."""
+SIZES: Final = (("", 1.0), (r"\small", 0.93), (r"\footnotesize", 0.86))  # commands, and how wide letters are
 _SETUP: Final = r"\sisetup{per-mode=symbol,group-digits=integer}"
 _GAP: Final = 1.21
 _NARROW_GAP: Final = 0.61

@@ -12,8 +12,7 @@ from symflex.report.document import Aside, Badge, Cell, Run, Section, Table, Ton
 from symflex.report.facts import ModelFacts
 
 Models = Mapping[str, ModelFacts]  # facts by the name of the model's file, without suffix
-Predicate = Callable[..., "Finding"]
-"""What may be checked, with facts, the names of what is checked, and values by keyword."""
+Predicate = Callable[..., "Finding"]  # what may be checked, of facts, names and values by keyword
 WORST: Final[tuple[Verdict, ...]] = ("not examined", "does not hold", "holds with a condition", "holds")
 """Verdicts; of several checks the first one here counts."""
 
@@ -94,13 +93,12 @@ def judged(is_true: bool, *evidence: Run, condition: bool = False) -> Finding:
 
 
 ANCHOR: Final = "claims"
-VERDICTS: Final[dict[str, tuple[Tone, str]]] = {
+VERDICTS: Final[dict[str, tuple[Tone, str]]] = {  # their tones, and what is said of several claims
     "holds": ("good", "hold"),
     "holds with a condition": ("fair", "hold with a condition"),
     "does not hold": ("bad", "do not hold"),
     "not examined": ("quiet", "are not examined"),
 }
-"""Their tones, and what is said of several claims."""
 SCHEMA: Final = "symflex.report-claims/1"
 
 

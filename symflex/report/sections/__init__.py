@@ -10,7 +10,7 @@ from symflex.report.document import ChapterPart
 from symflex.report.sections import files, formulas, letters, roots
 from symflex.report.study import Study
 
-SECTIONS: dict[str, Callable[[Study], ChapterPart | None]] = {
+SECTIONS: dict[str, Callable[[Study], ChapterPart | None]] = {  # sections in the order of the page
     "drawing": files.drawing_section,
     "parameters": formulas.parameter_section,
     "motion": formulas.motion_section,
@@ -24,4 +24,3 @@ SECTIONS: dict[str, Callable[[Study], ChapterPart | None]] = {
     "files": files.export_section,
     "specification": formulas.specification_section,
 }
-"""Sections in the order of the page."""
