@@ -68,32 +68,7 @@ class Audit:
 
 
 def judge(tf: TransferFunction, published: Published) -> Audit:
-    """Compare a printed formula with the derived function; SpecError for what is no formula.
-
-    >>> from symflex.errors import Source
-    >>> from symflex.model import load_model
-    >>> from symflex.equations import assemble
-    >>> from symflex.transfer import derive
-    >>> text = '''
-    ... symflex = 1
-    ... [parameters]
-    ... m = "2 kg"
-    ... k = "8 N/m"
-    ... [elements]
-    ... body = { type = "mass", at = "x", m = "m" }
-    ... spring = { type = "spring", between = ["x", "ground"], k = "k" }
-    ... [inputs]
-    ... F = { force = "x" }
-    ... [outputs]
-    ... X = "x"
-    ... [published."X/F"]
-    ... expr = "1/(m*s^2 - k)"
-    ... '''
-    >>> model = load_model(Source("oscillator.toml", text))
-    >>> found = judge(derive(assemble(model), "X", "F"), model.published[0])
-    >>> found.verdict, [(c.place, c.printed.operand.name) for c in found.changes]
-    ('differs', [('denominator', 'k')])
-    """
+    """Compare a printed formula with the derived function; SpecError for what is no formula."""
     formula = formula_of(published, tf.model)
     unread, reading = "", None
     try:

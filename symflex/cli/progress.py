@@ -19,20 +19,10 @@ BAR = 20
 
 
 class ProgressBar:
-    r"""One line that shows how far a computation is, and erases itself.
+    """One line that shows how far a computation is, and erases itself.
 
     It is drawn on terminals only, not before a second has passed, and not when ``NO_COLOR`` is set or the
     terminal is a ``dumb`` one: both stand for lines that are not rewritten.
-
-    >>> from io import StringIO
-    >>> class Screen(StringIO):
-    ...     def isatty(self):
-    ...         return True
-    >>> screen, times = Screen(), iter([0.0, 2.0])
-    >>> bar = ProgressBar(screen, lambda: next(times))
-    >>> bar.report(0.25, "12 of 48 roots")
-    >>> screen.getvalue()
-    '\r[#####---------------]  25 %  12 of 48 roots'
     """
 
     def __init__(self, stream: TextIO | None = None, clock: Callable[[], float] = monotonic) -> None:

@@ -159,11 +159,7 @@ def julia_module(contents: Contents) -> Export:
 
 
 def module_name(text: str) -> str:
-    """Return a text as the name of a module, capitals for the first letters of words.
-
-    >>> module_name("six_mass"), module_name("Main"), module_name("2 masses, joined"), module_name("")
-    ('SixMass', 'Main_', 'P2MassesJoined', 'TransferFunctions')
-    """
+    """Return a text as the name of a module, capitals for the first letters of words."""
     words = re.findall(r"[A-Za-z0-9]+", text)[:4]  # the first of them name it
     joined = "".join(word[:1].upper() + word[1:] for word in words) or "TransferFunctions"
     plain = joined if joined[0].isalpha() else f"P{joined}"

@@ -181,11 +181,7 @@ class LocalFunctions(PrivateFunctions):
 
 
 def main_name(text: str) -> str:
-    """Return a text as the name of a function file: the text itself where it can be one.
-
-    >>> main_name("six_mass"), main_name("exp"), main_name("2 masses, joined"), main_name("")
-    ('six_mass', 'exp_', 'p_2_masses__joined', 'model')
-    """
+    """Return a text as the name of a function file: the text itself where it can be one."""
     short = text if re.fullmatch(r"[A-Za-z]\w*", text, re.ASCII) else text[:TITLE_LENGTH].strip()
     return identifiers({"main": short or "model"}, RESERVED, LONGEST)["main"]
 

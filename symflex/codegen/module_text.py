@@ -107,11 +107,6 @@ def identifiers(
     Any texts may be wanted, the same one twice. ``reserved`` are keywords, and what the generated code uses;
     texts of more than the ``longest`` number of characters are cut. Different keys have different
     identifiers: letters, digits and underscores of ASCII, a letter first.
-
-    >>> dict(identifiers({"a": "lambda", "b": "lambda_", "c": "k", "d": "2x)", "e": "k"}, {"lambda"}))
-    {'a': 'lambda_2', 'b': 'lambda_', 'c': 'k', 'd': 'p_2x_', 'e': 'k_'}
-    >>> dict(identifiers({"a": "stiffness_1", "b": "stiffness_2"}, {}, longest=9))
-    {'a': 'stiffness', 'b': 'stiffnes_'}
     """
     chosen: dict[str, str] = {}
     taken = set(reserved)
@@ -136,15 +131,10 @@ _OPERATOR = re.compile(r"[^*/]+[*/]*|[*/]+")
 
 
 def inert(text: str) -> str:
-    r"""Return text on one line that can neither end a docstring nor start a doctest or directive in it.
+    """Return text on one line that can neither end a docstring nor start a doctest or directive in it.
 
     Line ends become spaces, double quotes single ones, characters that do not print their code points,
     and the marks at which doctest and reStructuredText begin to obey are pulled apart.
-
-    >>> inert("mass of\n the \u202e body")
-    'mass of the <U+202E> body'
-    >>> inert('a' + '"' * 3 + '>' * 3 + ' b')
-    "a'''> > > b"
     """
     line = " ".join(text.split())
     shown = "".join(c if c.isprintable() else f"<U+{ord(c):04X}>" for c in line).replace('"', "'")

@@ -63,15 +63,6 @@ def format_expression(expression: Expression, *, multiply: str = "*", power: str
     numbers are non-negative integers or finite decimals of at most 40 significant digits, not below 1e-200.
     Any other number prints as numerator over denominator and is read back as the ``Quotient`` of two
     integers, of the same value; a negative number is read back as the ``Negative`` of a positive one.
-
-    >>> from fractions import Fraction
-    >>> s, m = Name("s"), Name("m")
-    >>> format_expression(Product((m, Power(s, Number(Fraction(2))))))
-    'm*s^2'
-    >>> format_expression(Quotient(Number(Fraction(1, 8)), Sum((m, Negative(s)))))
-    '0.125/(m - s)'
-    >>> format_expression(Power(Number(Fraction(1, 3)), s), power="**")
-    '(1/3)**s'
     """
     pieces: list[str] = []
     work: _Work = [(expression, _Position.ALONE)]

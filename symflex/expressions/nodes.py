@@ -192,22 +192,13 @@ class Equation(Expression):
 
 
 def number(value: Fraction | int) -> Expression:
-    """Return a number; a negative one is minus a positive one.
-
-    >>> number(-2)
-    Negative(operand=Number(value=Fraction(2, 1)))
-    """
+    """Return a number; a negative one is minus a positive one."""
     exact = Fraction(value)
     return Number(exact) if exact.numerator >= 0 else Negative(Number(-exact))
 
 
 def sum_of(terms: Iterable[Expression]) -> Expression:
-    """Return the sum of any number of terms, in order; of none, zero.
-
-    >>> from symflex.expressions.nodes import Name
-    >>> sum_of([Name("a"), number(0), Sum((Name("b"), Name("c")))])
-    Sum(terms=(Name(name='a'), Name(name='b'), Name(name='c')))
-    """
+    """Return the sum of any number of terms, in order; of none, zero."""
     flat: list[Expression] = []
     pending = list(terms)[::-1]
     while pending:
@@ -222,12 +213,7 @@ def sum_of(terms: Iterable[Expression]) -> Expression:
 
 
 def product_of(factors: Iterable[Expression]) -> Expression:
-    """Return the product of any number of factors, its numbers gathered in front; of none, one.
-
-    >>> from symflex.expressions.nodes import Name
-    >>> product_of([Name("a"), number(-2), Name("b"), number(3)])
-    Negative(operand=Product(factors=(Number(value=Fraction(6, 1)), Name(name='a'), Name(name='b'))))
-    """
+    """Return the product of any number of factors, its numbers gathered in front; of none, one."""
     coefficient: Fraction | int = 1
     flat: list[Expression] = []
     pending = list(factors)[::-1]
@@ -250,12 +236,7 @@ def product_of(factors: Iterable[Expression]) -> Expression:
 
 
 def quotient(numerator: Expression, denominator: Expression) -> Expression:
-    """Return a quotient, with the sign of both parts in front; it may raise ZeroDivisionError.
-
-    >>> from symflex.expressions.nodes import Name
-    >>> quotient(number(-1), Name("s"))
-    Negative(operand=Quotient(numerator=Number(value=Fraction(1, 1)), denominator=Name(name='s')))
-    """
+    """Return a quotient, with the sign of both parts in front; it may raise ZeroDivisionError."""
     above_is_negative, above = _signed(numerator)
     below_is_negative, below = _signed(denominator)
     if is_number(below, 0):
@@ -270,10 +251,6 @@ def power(base: Expression, exponent: Expression | int) -> Expression:
     """Return a power; the sign of the base leaves it when the exponent is an integer.
 
     ``x^0`` is 1 for every x, as in polynomials. It may raise ZeroDivisionError.
-
-    >>> from symflex.expressions.nodes import Name
-    >>> power(negative(Name("s")), 3)
-    Negative(operand=Power(base=Name(name='s'), exponent=Number(value=Fraction(3, 1))))
     """
     exponent_is_negative, size = _signed(number(exponent) if isinstance(exponent, int) else exponent)
     if is_number(size, 0):
@@ -295,12 +272,7 @@ def power(base: Expression, exponent: Expression | int) -> Expression:
 
 
 def negative(operand: Expression) -> Expression:
-    """Return minus an expression; minus minus x is x, minus zero is zero.
-
-    >>> from symflex.expressions.nodes import Name
-    >>> negative(negative(Name("a")))
-    Name(name='a')
-    """
+    """Return minus an expression; minus minus x is x, minus zero is zero."""
     is_negative, inner = _signed(operand)
     return inner if is_negative or is_number(inner, 0) else Negative(inner)
 
@@ -324,13 +296,7 @@ Value = TypeVar("Value")
 
 
 def names(expression: Expression) -> tuple[Name | Attribute | Call | Derivative, ...]:
-    """Return every node of a tree, or an equation, that bears a name; calls before their arguments.
-
-    >>> x = Name("x")
-    >>> names(Sum((Call("sin", x), Attribute("motor", "i"), x)))  # doctest: +NORMALIZE_WHITESPACE
-    (Call(name='sin', argument=Name(name='x'), order=0), Name(name='x'), Attribute(owner='motor', name='i'),
-     Name(name='x'))
-    """
+    """Return every node of a tree, or an equation, that bears a name; calls before their arguments."""
     return tuple(n for n in nodes(expression) if isinstance(n, Name | Attribute | Call | Derivative))
 
 
@@ -412,10 +378,6 @@ def substitute(expression: Expression, mapping: Mapping[str, Expression]) -> Exp
     Names are given as ``name``, or ``owner.name`` for an attribute; those of functions and fields stay. The
     new tree is flat like every tree and otherwise not simplified; parts without a replaced name are the same
     objects as before, and rebuilt parts keep their place in the text.
-
-    >>> a, b, c = Name("a"), Name("b"), Name("c")
-    >>> substitute(Sum((a, c)), {"a": Sum((b, c)), "c": a})
-    Sum(terms=(Name(name='b'), Name(name='c'), Name(name='a')))
     """
 
     def replacement(node: Expression) -> Expression:

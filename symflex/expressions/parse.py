@@ -66,14 +66,6 @@ def parse(text: Text, *, limits: Limits = USER_LIMITS, brackets: bool = False) -
     """Read an expression: sums and products are flat, parentheses leave no trace, numbers are exact.
 
     Text that the program itself has written takes :data:`PROGRAM_LIMITS`. Only the first problem is reported.
-
-    >>> from symflex.errors import Source, Span, Text
-    >>> source = Source("robot.toml", "m*s + 2.5e-3")
-    >>> tree = parse(Text(source.text, Span(source, 0, 12)))
-    >>> tree.terms
-    (Product(factors=(Name(name='m'), Name(name='s'))), Number(value=Fraction(1, 400)))
-    >>> str(tree.terms[1].span), tree.terms[1].span.text
-    ('robot.toml:1:7', '2.5e-3')
     """
     expression = _read(text, limits, "sum").node
     if not brackets and (
@@ -86,13 +78,7 @@ def parse(text: Text, *, limits: Limits = USER_LIMITS, brackets: bool = False) -
 
 
 def parse_equation(text: Text, *, limits: Limits = USER_LIMITS) -> Equation:
-    """Read ``left = right``, as fields write their equations and conditions; SF111 without one ``=``.
-
-    >>> from symflex.errors import Source, Span, Text
-    >>> source = Source("beam.toml", "w''(l) = 0")
-    >>> parse_equation(Text(source.text, Span(source, 0, 10)))
-    Equation(left=Call(name='w', argument=Name(name='l'), order=2), right=Number(value=Fraction(0, 1)))
-    """
+    """Read ``left = right``, as fields write their equations and conditions; SF111 without one ``=``."""
     equation = _read(text, limits, "equation").node
     assert isinstance(equation, Equation)
     return equation

@@ -147,15 +147,7 @@ _TURNED: Final = {"top": "right", "bottom": "left", "center": "center"}
 
 
 def pgf_text(text: str, *, is_math: bool = True) -> str:
-    r"""Return a text of a figure as LaTeX.
-
-    ``is_math`` is False when dollar signs are dollar signs.
-
-    >>> print(pgf_text(r"Gain [dB re 1 $\mathrm{m/N}$]"), pgf_text("$10^{2}$ 5%", is_math=False))
-    Gain [dB re 1 $\mathrm{m/N}$] \$10\textasciicircum{}\{2\}\$ 5\%
-    >>> print(pgf_text(r"$\input{x}$"))
-    \textbackslash{}input\{x\}
-    """
+    """Return a text of a figure as LaTeX; ``is_math`` is False when dollar signs are dollar signs."""
     parts = _DOLLAR.split(text) if is_math else [text]
     if len(parts) % 2 == 0:
         parts = [text]

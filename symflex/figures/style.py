@@ -164,11 +164,7 @@ def label_of(end: Output | Input) -> str:
 
 
 def label_of_name(name: str) -> str:
-    r"""Return a name in mathematics: words upright, Greek letters as such, what follows ``_`` as subscript.
-
-    >>> print(label_of_name("X_tip"), label_of_name("omega_p1"), label_of_name("x2"), label_of_name("y_s"))
-    X_{\mathrm{tip}} \omega_{\mathrm{p1}} x_{2} y_{s}
-    """
+    """Return a name in mathematics: words upright, Greek letters as such, what follows ``_`` subscript."""
     head, *subscripts = parts = name.split("_")
     if not all(parts):  # as equations print it, so that ``L_`` is not ``L``
         spelt = name.replace("_", r"\_")
@@ -204,11 +200,7 @@ def _unit_part(token: re.Match[str]) -> str:
 
 
 def label_of_unit(unit: str) -> str:
-    r"""Return a unit in upright mathematics, empty for a pure or unknown one.
-
-    >>> print(label_of_unit("m/(N*s^2)"), label_of_unit("uA/kOhm"))
-    $\mathrm{m/(N\,s^{2})}$ $\mathrm{\mu A/k\Omega}$
-    """
+    """Return a unit in upright mathematics, empty for a pure or unknown one."""
     return "" if unit in ("", "1") else rf"$\mathrm{{{_UNIT_TOKEN.sub(_unit_part, unit)}}}$"
 
 

@@ -30,11 +30,7 @@ _PACKAGE: Final = Path(__file__).parents[1]
 
 
 def examples() -> dict[str, Path]:
-    """Return the paths of all examples by their names, each folder before the models in it.
-
-    >>> [name for name in examples() if name.startswith("frames")][:3]
-    ['frames', 'frames/l_frame', 'frames/pin_ended_cross']
-    """
+    """Return the paths of all examples by their names, each folder before the models in it."""
     top = next(p / "derivations" for p in (_PACKAGE, _PACKAGE.parent) if (p / "derivations").is_dir())
     by_name: dict[str, Path] = {}
     for name in FOLDERS:

@@ -22,22 +22,13 @@ def write_atomically(path: Path, data: bytes) -> None:
     The data go to a temporary file in the same folder, reach the disk, and then take the place of ``path``.
     An existing file keeps its permissions; a new one gets those of the process's umask. SF903 with the reason
     leaves the old content, if any, and no temporary file.
-
-    >>> write_atomically(Path("no/such/folder/a.svg"), b"")
-    Traceback (most recent call last):
-    symflex.errors.exceptions.UsageError: error[SF903]: cannot write 'no/such/folder/a.svg': ...
     """
     with _refusals(os.fspath(path)):
         _write(Path(path), data)
 
 
 def check_writable(path: Path) -> None:
-    """Refuse, before anything is computed for it, a file that could not be written afterwards: SF903.
-
-    >>> check_writable(Path("no/such/folder/a.svg"))
-    Traceback (most recent call last):
-    symflex.errors.exceptions.UsageError: error[SF903]: cannot write 'no/such/folder/a.svg': ...
-    """
+    """Refuse, before anything is computed for it, a file that could not be written afterwards: SF903."""
     name = os.fspath(path)
     with _refusals(name):
         _mode_of_regular_file(path)

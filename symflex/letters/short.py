@@ -306,19 +306,6 @@ def shortened(
 
     ``share`` is the spread of every parameter; by default each has its own. Raises ModelError: SF229 for a
     parameter without value; BudgetError: SF501 for a side of too many terms.
-
-    Examples
-    --------
-    >>> from symflex import pipeline
-    >>> model = pipeline.loads('''
-    ... symflex = 1
-    ... parameters = { m = "200 kg", m_n = "1 kg", k = "1 kN/m" }
-    ... inputs.F = {}
-    ... outputs.x = "F/((m + m_n)*s^2 + k)"
-    ... ''')
-    >>> short, form = shortened(pipeline.derive_all(model)[0], Fraction(1, 100), Fraction(1, 10))
-    >>> str(short.ratio), form.approximation.said[0]
-    ('(s^2*m + k)^-1', '2 of 3 terms; coefficients change by at most 0.5 %, over the spread by 0.61 %')
     """
     values_for(tf.model, tf.parameters, {})
     has_box = share is not None or any(p.spread is not None for p in tf.parameters)

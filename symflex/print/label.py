@@ -79,13 +79,7 @@ class Label:
 
 
 def label_of(name: str) -> str:
-    r"""Return the label of a name that has none declared.
-
-    Greek names print as letters, the parts after underscores as subscripts; words in subscripts are upright.
-
-    >>> print(*map(label_of, ("omega_p1", "k_amp", "EI", "m_1", "k_tau", "V_tip_x", "Z_ij", "rhoA")))
-    \omega_{p1} k_{\mathrm{amp}} \mathit{EI} m_{1} k_{\tau} V_{\mathrm{tip},x} Z_{ij} \mathit{\rho A}
-    """
+    """Return the label of a name that has none declared: Greek letters, and subscripts after underscores."""
     return _made(name).latex
 
 

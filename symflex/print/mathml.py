@@ -75,13 +75,7 @@ def math_element(content: str, *, is_display: bool = False) -> str:
 
 
 def label_mathml(name: str, labels: Mapping[str, str]) -> str:
-    r"""Return the label of a name, declared or made.
-
-    >>> label_mathml("omega_p1", {})
-    '<msub><mi>ω</mi><mrow><mi>p</mi><mn>1</mn></mrow></msub>'
-    >>> label_mathml("m", {"m": r"m_{\mathrm{eff}}"})
-    '<msub><mi>m</mi><mi>eff</mi></msub>'
-    """
+    """Return the label of a name, declared or made."""
     return symbol(name, labels).mathml or words(name, "tt")
 
 

@@ -11,14 +11,7 @@ _ZERO: Final = Fraction(0)
 
 @dataclass(frozen=True, order=True, slots=True)
 class Dimension:
-    """Exponents of the SI base units; angles and cycles have dimension one.
-
-    >>> length, time = Dimension(m=Fraction(1)), Dimension(s=Fraction(1))
-    >>> str(length / time**2)
-    'm/s^2'
-    >>> str(length ** Fraction(1, 2))
-    'm^(1/2)'
-    """
+    """Exponents of the SI base units; angles and cycles have dimension one."""
 
     # kg, m, s, A, K, mol and cd: exponent of each base unit; half exponents appear under square roots.
     kg: Fraction = _ZERO

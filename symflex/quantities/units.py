@@ -19,11 +19,7 @@ from symflex.quantities.dimension import DIMENSIONLESS, Dimension
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """A unit as ``scale * pi**pi_power`` times a product of SI base units.
-
-    >>> (UNITS["in"] ** 2).scale
-    Fraction(16129, 25000000)
-    """
+    """A unit as ``scale * pi**pi_power`` times a product of SI base units."""
 
     scale: Fraction  # exact factor to SI, without its power of pi
     pi_power: int = 0  # power of pi in the factor: 1 for deg
@@ -287,11 +283,7 @@ _USUAL_PREFIXES: Final = ("", "n", "u", "m", "c", "k", "M", "G")
 
 
 def unit_named(symbol: str) -> Unit | None:
-    """Return the unit of a symbol, prefixed or not (``min`` is the minute), or ``None`` without one.
-
-    >>> unit_named("krpm").scale, unit_named("Krpm")
-    (Fraction(50, 3), None)
-    """
+    """Return the unit of a symbol, prefixed or not (``min`` is the minute), or ``None`` without one."""
     if symbol in UNITS:
         return UNITS[symbol]
     for length in (1, 2):
@@ -323,11 +315,7 @@ def run_together(symbol: str) -> tuple[Unit, Unit] | None:
 
 
 def unit_hint(symbol: str) -> str | None:
-    """Return what an unknown symbol was probably meant to be.
-
-    >>> unit_hint("KN"), unit_hint("kgmm")
-    ("did you mean 'kN'?", "did you mean 'kg*mm'?")
-    """
+    """Return what an unknown symbol was probably meant to be."""
     for written in (symbol, symbol.lower()):
         # Two letters are too few to tell a slip from another unit.
         if written in _INSTEAD and (written == symbol or symbol[2:]):
@@ -355,14 +343,7 @@ def unit_hint(symbol: str) -> str | None:
 
 
 def unit_slip(unit: str, given: Dimension, wanted: Dimension) -> str | None:
-    """Return how a unit is written that has another letter, a mass for a force, or one slash too many.
-
-    >>> from symflex.quantities import unit_of
-    >>> unit_slip("lb/ft", unit_of("lb/ft").dimension, unit_of("N/m").dimension)
-    "'lb' is a mass, 'lbf' a force: write 'lbf/ft'"
-    >>> unit_slip("N/m/s", unit_of("N/m/s").dimension, unit_of("N*s/m").dimension)
-    "'/' divides each time: write 'N/(m/s)'"
-    """
+    """Return how a unit is written that has another letter, a mass for a force, or one slash too many."""
     if unit in ("K", "m", "T", "F") and str(wanted) in ("Ohm", "F", "H", "V", "A"):
         return f"a prefix needs a unit: write '{unit.replace('K', 'k')}{wanted}'"
     return _letter_slip(unit, given, wanted) or _slash_slip(unit, given, wanted)
@@ -393,13 +374,7 @@ def _letter_slip(unit: str, given: Dimension, wanted: Dimension) -> str | None:
 
 
 def unit_doubt(unit: str) -> tuple[str, str] | None:
-    """Return how a unit is read that data sheets mean differently, and how what they mean is written.
-
-    >>> unit_doubt("mV/g")
-    ("'g' is a gram", "for the acceleration of gravity write 'mV/g_n'")
-    >>> unit_doubt("J/kg"), unit_doubt("L/min")
-    (None, None)
-    """
+    """Return how a unit is read that data sheets mean differently, and how what they mean is written."""
     for pattern, meant, read, what in _DOUBTS:
         if place := re.search(pattern, unit):
             right = f"{unit[: place.start(1)]}{meant or place[1] + 'f'}{unit[place.end(1) :]}"

@@ -109,10 +109,6 @@ def name_specifications(paths: Sequence[Path]) -> dict[str, Path]:
     """Return paths by the name their files in the report begin with.
 
     The names are made of letters, digits and underscores, and differ also where capitals count as small.
-
-    >>> from pathlib import Path
-    >>> name_specifications([Path("a/beam.toml"), Path("b/Beam.toml"), Path("2 <x>.toml")])
-    {'beam': PosixPath('a/beam.toml'), 'Beam_2': PosixPath('b/Beam.toml'), 'm_2__x_': PosixPath('2 <x>.toml')}
     """
     named: dict[str, Path] = {}
     for path in paths:

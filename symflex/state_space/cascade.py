@@ -56,12 +56,7 @@ class _Section:
 
 
 def cascade(zeros: Sequence[mpmath.mpc], poles: Sequence[mpmath.mpc], gain: mpmath.mpf, name: str) -> Arrays:
-    """Return the state equations of ``gain*prod(s - z)/prod(s - p)``; messages call it ``name``.
-
-    >>> made = cascade([], [mpmath.mpc(0, 2), mpmath.mpc(0, -2)], mpmath.mpf(8), "8/(s^2 + 4)")
-    >>> made.a.tolist(), made.b.tolist(), made.c.tolist()
-    ([[0.0, 2.0], [-2.0, 0.0]], [[0.0], [1.0]], [[4.0, 0.0]])
-    """
+    """Return the state equations of ``gain*prod(s - z)/prod(s - p)``; messages call it ``name``."""
     if len(zeros) > len(poles):
         message = f"{name} has more zeros than poles: no state equations have its output"
         raise ModelError(Diagnostic("SF236", message, None, "take an output with fewer derivatives"))

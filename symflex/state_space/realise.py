@@ -59,21 +59,6 @@ def realise(model: Model, pairs: Sequence[tuple[str, str]] | None = None) -> Sta
     """Return one realisation with the outputs and inputs of the given pairs, all by default.
 
     Other inputs are zero. All states of the model are in it, uncontrollable and unobservable ones too.
-
-    >>> from symflex import pipeline
-    >>> model = pipeline.loads('''
-    ... symflex = 1
-    ... parameters = {m = "2 kg", k = "8 N/m"}
-    ... elements.body = {type = "mass", at = "x", m = "m"}
-    ... elements.wall = {type = "spring", between = ["x", "ground"], k = "k"}
-    ... inputs.F = {force = "x"}
-    ... outputs.X = "x"
-    ... ''')
-    >>> found = realise(model)
-    >>> [(state.name, state.unit) for state in found.states]
-    [('x', 'm'), ('x_dot', 'm/s')]
-    >>> print(found.a[1][0])
-    (-k)/(m)
     """
     check_causal(model, "a state-space model")
     if model.is_distributed:

@@ -180,12 +180,7 @@ def sampled(
 ) -> SampledStateSpace:
     """Return the system as it is seen at samples, the input held between them, or as tustin computes it.
 
-    ``names`` are those of states, inputs and outputs.
-
-    >>> lag = lambda bits: (arb_mat([[-1]]), arb_mat([[1]]), arb_mat([[1]]), arb_mat([[0]]))
-    >>> found = sampled(lag, Sampling(Fraction(1, 10)), Fraction(0), (["y"], ["u"], ["y"]))
-    >>> found.A.round(9).tolist(), found.B.round(9).tolist()
-    ([[0.904837418]], [[0.095162582]])
+    ``names`` are those of states, inputs and outputs, in this order.
     """
     sampling.check_delay(delay)
     if sampling.method == "matched":

@@ -72,12 +72,7 @@ class Range:
 
 @dataclass(frozen=True)
 class Design:
-    """The points of a sweep: the product of the axes, and for each all draws; SF507 for a million.
-
-    >>> grid = Design((Axis("m", (ExactValue(Fraction(1)), ExactValue(Fraction(2)))),))
-    >>> grid.count, grid.names, [point[0].rational for point in grid.points]
-    (2, ('m',), [Fraction(1, 1), Fraction(2, 1)])
-    """
+    """The points of a sweep: the product of the axes, and for each all draws; SF507 for a million."""
 
     axes: tuple[Axis, ...] = ()  # the last one varies fastest
     # Drawn from, as a Latin hypercube: each of the N equal parts of every range is met once.
@@ -223,11 +218,6 @@ def read_design(
     ``NAME=LO:HI:lin|log:COUNT`` and ``NAME=V1,V2,...`` are axes of a grid; ``NAME=LO:HI``, ``NAME=LO:HI:log``
     and ``NAME=+-5%`` (about the declared value) are ranges from which ``draws`` points are drawn. Numbers are
     in SI units or carry a unit.
-
-    >>> from symflex.model import ModelParameter
-    >>> design = read_design([ModelParameter("k", None)], ["k=1:100:log:3"])
-    >>> [str(point[0].rational) for point in design.points]
-    ['1', '10', '100']
     """
     if not texts:
         raise refused("no parameter to sweep", f"add --over: {FORMS}")
@@ -240,13 +230,7 @@ def design_of(
     draws: int = 0,
     seed: int = 1,
 ) -> Design:
-    """Return the design that a mapping says: per parameter a text as for :func:`read_design`, or values.
-
-    >>> from symflex.model import ModelParameter
-    >>> parameters = [ModelParameter(name, None) for name in ("k", "m")]
-    >>> design_of(parameters, {"k": "1:2:lin:2", "m": [0.5, "3"]}).shape
-    (2, 2)
-    """
+    """Return the design that a mapping says: per parameter a text as for :func:`read_design`, or values."""
     read: list[Axis | Range] = []
     for name, said in over.items():
         if isinstance(said, str):

@@ -86,13 +86,6 @@ def predecessors(design: Design) -> Predecessors:
 
     In a grid that is the neighbour towards the first value of the last axis that is not there yet. Draws are
     reached from the one in the middle outwards, each from the nearest that is closer to the middle.
-
-    >>> from fractions import Fraction
-    >>> from symflex.model import ExactValue
-    >>> from symflex.sweep.design import Axis, Design
-    >>> two = tuple(ExactValue(Fraction(n)) for n in (1, 2))
-    >>> predecessors(Design((Axis("a", two), Axis("b", two)))).before
-    (-1, 0, 0, 2)
     """
     draws = max(design.draws, 1)
     order, nearest = _outwards(design) if design.draws else ((0,), (-1,))
@@ -164,10 +157,6 @@ def follow(s: Complexes, family: Integers, steps: Predecessors, between: Between
     behind the last of a point. ``family`` is equal and not 0 for points whose roots are the same but for one
     factor, in the same order. ``steps`` is the way through the design; ``between`` is asked where names are
     in doubt.
-
-    >>> s = np.array([[1j, 2j], [1.1j, 1.9j]])
-    >>> follow(s, np.zeros(2, int), Predecessors((0, 1), (-1, 0), (-1, -1), (1.0, 1.0))).mode.tolist()
-    [[0, 1], [0, 1]]
     """
     count = np.sum(~np.isnan(s.real), axis=1)
     mode = np.full(s.shape, -1, np.int64)

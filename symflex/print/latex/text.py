@@ -83,16 +83,11 @@ _CHUNK_EM: Final = 4.0
 
 
 def escape_text(text: str) -> str:
-    r"""Return plain text as LaTeX text that prints it, whatever it holds.
+    """Return plain text as LaTeX text that prints it, whatever it holds.
 
     White space becomes single spaces; control and formatting characters vanish; letters of other scripts are
     written as their Latin base letter where they have one and as ``[U+4E2D]`` otherwise; a word too long for
     a narrow column may be broken anywhere.
-
-    >>> print(escape_text(r"100 % of \input{x} & k_1^2"))
-    100 \% of \textbackslash{}input\{x\} \& k\_1\textasciicircum{}2
-    >>> print(escape_text("Größe ω\n中"))
-    Gr\"{o}\ss{}e \ensuremath{\omega} [U+4E2D]
     """
     return " ".join(_WORD.sub(lambda match: _word(match[0]), text).split())
 

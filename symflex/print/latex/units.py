@@ -25,13 +25,7 @@ _POWERS: Final = {"1": "", "2": r"\squared", "3": r"\cubed"}
 
 
 def siunitx_unit(unit: str) -> str | None:
-    r"""Return the argument of ``\unit`` or ``\qty``; empty for a pure number, ``None`` when it has none.
-
-    >>> print(siunitx_unit("N*s/m"), siunitx_unit("kg*m^2"), siunitx_unit("m/(V*s^2)"))
-    \newton\second\per\metre \kilogram\metre\squared \metre\per\volt\per\second\squared
-    >>> siunitx_unit("1"), siunitx_unit(r"\input{x}")
-    ('', None)
-    """
+    r"""Return the argument of ``\unit`` or ``\qty``; empty for a pure number, ``None`` when it has none."""
     factors = _factors(unit)
     if factors is None:
         return None
