@@ -14,11 +14,7 @@ if TYPE_CHECKING:
 
 
 class Block(Stateless):
-    """Base of every block. Subclasses are final, stateless and registered in ``BLOCKS``.
-
-    A block with ``kernel_time``, the name of one of its parameters, is ``exp(-s*T)`` of that time; it has a
-    generator of its own in the equations, which never evaluate its formula.
-    """
+    """Base of every block, final and stateless. With ``kernel_time`` it is ``exp(-s*T)``, a generator."""
 
     type_name: ClassVar[str]
     formula: ClassVar[str] = ""  # the transfer function in s and the parameters; none of state equations
@@ -235,5 +231,4 @@ BLOCKS: dict[str, Block] = {
     )
 }
 
-MODEL_BLOCK = "model"
-"""The block that stands for another specification's transfer function; resolved by the package ``model``."""
+MODEL_BLOCK = "model"  # it stands for another specification, and is resolved by the package ``model``

@@ -42,10 +42,7 @@ class FieldSystem:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Axes:
-    """The axes of a member, u along it and v across, as seen from the axes x and y of the plane.
-
-    Products are given besides, as a root in the cosine of 45 deg is none in its square.
-    """
+    """The axes u and v of a member, with products: the root in the cosine of 45 deg is none in its square."""
 
     own: FieldSystem  # the equations in the member's axes, loads none
     cos: Factored
@@ -54,10 +51,7 @@ class Axes:
     cos_sin: Factored
 
     def turned(self, matrix: Matrix) -> Matrix:
-        """Return ``R^T matrix R``, in the plane's axes; R takes these to the member's.
-
-        Every pair of states that :data:`VECTORS` lists turns, the others stay.
-        """
+        """Return ``R^T matrix R``; R takes pairs in :data:`VECTORS` from the plane's axes to the member's."""
         size = len(matrix)
         rows = [list(row) for row in matrix]
         partner = {i: j for pair in VECTORS for i, j in (pair, pair[::-1])}
@@ -113,10 +107,8 @@ class FieldEquation:
 def first_order(
     unknowns: Sequence[str], inputs: Sequence[Hashable], equations: Sequence[FieldEquation], zero: Factored
 ) -> FieldSystem | None:
-    """Return the equations as a first-order system, ``None`` when the highest derivatives are not determined.
-
-    The state called ``(u, k)`` is named ``u`` followed by k primes.
-    """
+    """Return the equations as a first-order system, ``None`` if the highest derivatives stay open."""
+    # The state called ``(u, k)`` is named ``u`` followed by k primes.
     orders = {u: max((k for e in equations for v, k in e.terms if v == u), default=0) for u in unknowns}
     highest = [[e.terms.get((u, orders[u]), zero) for u in unknowns] for e in equations]
     states = [(u, k) for u in unknowns for k in range(orders[u])]
@@ -298,10 +290,7 @@ def text(value: Factored) -> str:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Component:
-    """A part of a field's states that is coupled to no other part, or the share that one law has in it.
-
-    Of a member at an angle, the parts in its own axes: stretching and bending both move x and y.
-    """
+    """A part of a field's states, in a member's axes, coupled to no other, or the share of one law in it."""
 
     states: tuple[int, ...]  # the positions, among the system's states, of those it moves
     characteristic: Characteristic  # of this part alone, without its multiplicity
@@ -342,11 +331,9 @@ def varying_components(system: FieldSystem) -> tuple[Component, ...]:
 def components(
     system: FieldSystem, settled: Callable[[Factored], Factored] | None = None
 ) -> tuple[Component, ...]:
-    """Return the uncoupled parts of a field's equations, each with its characteristic polynomial.
-
-    With ``settled``, which returns a value with all that is known of its generators put in, polynomials that
-    factor into such whose roots have a formula, and squares of these, give one part per factor.
-    """
+    """Return the uncoupled parts of a field's equations, each with its characteristic polynomial."""
+    # With ``settled``, which returns a value with all that is known of its generators put in, polynomials
+    # that factor into such whose roots have a formula, and squares of these, give one part per factor.
     parts = []
     axes = system.axes
     whole = system.matrix if axes is None else axes.own.matrix
@@ -412,10 +399,8 @@ def coupled_states(count: int, places: Collection[tuple[int, int]]) -> list[tupl
 
 
 def faddeev_leverrier(matrix: Matrix) -> tuple[tuple[Factored, ...], tuple[Matrix, ...]]:
-    """Return ``c_0, ..., c_(n-1)`` and ``B_0, ..., B_(n-1)`` (Faddeev & Faddeeva 1963, section 47).
-
-    Raises BudgetError: SF501 when densely coupled equations grow beyond what a closed form can hold.
-    """
+    """Return ``c_0, ..., c_(n-1)``, ``B_0, ..., B_(n-1)`` (Faddeev & Faddeeva 1963, section 47)."""
+    # Raises BudgetError: SF501 when densely coupled equations grow beyond what a closed form can hold.
     n = len(matrix)
     zero = matrix[0][0] * 0
     identity = tuple(tuple(zero + int(i == j) for j in range(n)) for i in range(n))

@@ -105,11 +105,9 @@ def shares(
     adjugate: Sequence[Matrix],
     known: Collection[fmpz_mpoly],
 ) -> tuple[Share, ...] | None:
-    """Return the partial fractions of ``adj/chi``, whose denominators are ``known`` before.
-
-    Where two factors meet, their sum has no pole, but each has. That is seen later at s = 0, and where what
-    vanishes is linear in s or a parameter; ``None`` for others.
-    """
+    """Return the partial fractions of ``adj/chi``, whose denominators are ``known`` before."""
+    # Where two factors meet, their sum has no pole, but each has. That is seen later at s = 0, and where what
+    # vanishes is linear in s or a parameter; ``None`` for others.
     one = adjugate[0][0][0] ** 0
     powers = []
     for p, m in factors_found:

@@ -42,8 +42,7 @@ if TYPE_CHECKING:
 NESTING_LIMIT = 8
 DECLARATION = "symflex"
 ALLOW_HINT = "--allow-outside FOLDER, in Python allow_outside, lets model blocks read another folder"
-BLOCK_LIMIT = 100
-"""``model`` blocks with those inside them: files of two blocks each would double them at every level."""
+BLOCK_LIMIT = 100  # ``model`` blocks in all: files of two blocks each would double them at every level
 
 
 @dataclass(slots=True)
@@ -72,11 +71,7 @@ class Loads:
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """Where a specification stands, which ones led to it, and what was read on the way.
-
-    ``resolve`` turns a source into a model; it is passed down so that a nested specification
-    is resolved exactly as the outer one.
-    """
+    """Where a specification stands, which ones led to it, what was read, and how nested ones are resolved."""
 
     source: Source
     ancestors: tuple[Path, ...]
@@ -202,10 +197,8 @@ def items_of(value: Value) -> tuple[Value, ...]:
 def matrix_rows(
     reader: Reader, value: Value, where: str, wanted: tuple[int, int]
 ) -> list[list[Expression]] | None:
-    """Return a matrix of so many rows and columns.
-
-    A column or row may be written as one array, what has one entry as that, and a matrix of zeros as 0.
-    """
+    """Return a matrix of so many rows and columns."""
+    # A column or row may be written as one array, what has one entry as that, and a matrix of zeros as 0.
     rows = [items_of(row) for row in items_of(value)]
     if len(rows) > EXPONENT_LIMIT:
         message = f"{where} has {len(rows)} rows; at most {EXPONENT_LIMIT} are allowed"

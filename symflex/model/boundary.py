@@ -373,10 +373,7 @@ def _has_tip(field: FieldProblem, point: RandomPoint) -> bool:
 
 
 class _PlaceCounts:
-    """How many conditions stand at each place along x, and how many are usual there.
-
-    An end of a field of even order usually has half as many; where fields are joined, the ends add up.
-    """
+    """How many conditions stand at each place along x, and how many are usual: mostly half the order."""
 
     def __init__(
         self,

@@ -46,10 +46,8 @@ OPENED_LIMIT = 3_000  # parts of an equation with its brackets opened: some hund
 def open_brackets(
     equation: Equation, unknowns: Collection[str], *, has_coordinate: bool, is_condition: bool
 ) -> tuple[Equation, list[Diagnostic]]:
-    """Return an equation or condition without brackets that bear primes, and what is wrong with these.
-
-    Where a model ``has_coordinate`` not, x is something else, and constant.
-    """
+    """Return an equation or condition without brackets that bear primes, and what is wrong with these."""
+    # Where a model ``has_coordinate`` not, x is something else, and constant.
     if not any(isinstance(n, Differentiated) for n in nodes(equation)):
         return equation, []
     opener = _Opener(frozenset(unknowns), has_coordinate, is_condition)
@@ -62,20 +60,10 @@ def open_brackets(
 def named_brackets(
     equations: Sequence[Equation], unknowns: Sequence[str]
 ) -> tuple[tuple[Equation, ...], tuple[str, ...]]:
-    """Return equations in which what a bracket differentiates is an unknown of its own, and all unknowns.
-
-    Its equation comes after the others. Brackets are opened where that would add to the order in x, or leave
-    an unknown without a derivative. No coefficient is differentiated then: ``(E*I*w'')'' = p`` becomes
-    ``M'' = p`` and ``E*I*w'' = M``.
-
-    >>> from symflex.expressions import format_expression, parse_equation
-    >>> from symflex.errors import Source, Span, Text
-    >>> source = Source("", "(A*x*u')' = s^2*u")
-    >>> equation = parse_equation(Text(source.text, Span(source, 0, len(source.text))))
-    >>> found, unknowns = named_brackets([equation], ["u"])
-    >>> [format_expression(e) for e in found], unknowns
-    (["(A*x*u')' = s^2*u", "A*x*u' = (A*x*u')"], ('u', "(A*x*u')"))
-    """
+    """Return equations in which what a bracket differentiates is an unknown of its own, and all unknowns."""
+    # Its equation comes after the others. Brackets are opened where that would add to the order in x, or
+    # leave an unknown without a derivative. No coefficient is differentiated then: ``(E*I*w'')'' = p``
+    # becomes ``M'' = p`` and ``E*I*w'' = M``.
     opened, names = list(equations), list(unknowns)
     while bracket := next((n for e in opened for n in nodes(e) if isinstance(n, Differentiated)), None):
         name = f"({format_expression(bracket.operand)})"

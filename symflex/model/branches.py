@@ -53,8 +53,7 @@ if TYPE_CHECKING:
 
 SIZE_LIMIT = 1_000  # nodes of a definition that is written out
 HALF = 2  # the denominator of powers of which a constant may be a factor: its root is a function of constants
-MOST_SHEETS = 12
-"""The largest common denominator of exponents: polynomials in r have so many times the degree."""
+MOST_SHEETS = 12  # largest common denominator of exponents: a polynomial in r has so many times the degree
 
 
 def with_branches(draft: Draft, taken: Collection[str]) -> Draft:

@@ -40,11 +40,7 @@ ASSUMPTIONS = ("positive", "nonnegative", "real")
 
 
 class CycleReading(Enum):
-    """How the cycles in a parameter's unit are meant where it is used.
-
-    ``CYCLES``: as they are. ``TURNED``: as they are, and 2 pi stands beside the name wherever it is used.
-    ``CONVERTED``: as radians, which the places it is given to ask for.
-    """
+    """How a unit's cycles are meant: as they are (CYCLES), times 2 pi (TURNED) or as radians (CONVERTED)."""
 
     CYCLES = "cycles"
     TURNED = "turned"

@@ -69,8 +69,7 @@ PER_SECOND = unit_of("1/s").dimension
 SECOND = unit_of("s").dimension
 EXTREME_EXPONENT = 10**6  # largest exponent of a unit; twenty definitions that square each other pass it
 
-TIMED = PARAMETER = 2
-"""What :class:`Measure` calls a number that is a pole or a time, and a parameter with a unit."""
+TIMED = PARAMETER = 2  # what :class:`Measure` calls a pole or a time, and a parameter with a unit
 
 LONGEST_TERM = 32  # characters up to which a message repeats a term of a sum
 
@@ -224,11 +223,9 @@ class DimensionSystem:
     def require(
         self, expression: Expression, unit: str, what: str, a_what: str, *, varies: bool = False
     ) -> None:
-        """Demand that the value of a port is measured in the port's SI unit; an empty one accepts anything.
-
-        In the message it is called ``what``, "m of mass 'tip'", and ``a_what``, "a mass". If it ``varies``
-        along x, that is a length.
-        """
+        """Demand that a port's value is measured in the port's SI unit; an empty one accepts anything."""
+        # In the message it is called ``what``, "m of mass 'tip'", and ``a_what``, "a mass". If it ``varies``
+        # along x, that is a length.
         self._coordinate = Measure(unit_of("m").dimension) if varies else None
         measure = self.measure(expression)
         self._coordinate = None

@@ -38,15 +38,7 @@ SQUARES = {
 
 
 def direction_of(angle: Expression) -> Mapping[str, Expression]:
-    """Return the cosine and sine of an angle, and the products that turning a matrix takes.
-
-    >>> from symflex.expressions import Name, format_expression
-    >>> angle = Sum((Name("alpha"), Quotient(Name("pi"), Number(Fraction(2)))))
-    >>> {name: format_expression(e) for name, e in direction_of(angle).items()}
-    {'cos': '-sin(alpha)', 'sin': 'cos(alpha)', 'cos_cos': 'sin(alpha)*sin(alpha)', ...}
-    >>> {name: format_expression(e) for name, e in direction_of(angle.terms[1]).items()}
-    {'cos': '0', 'sin': '1', 'cos_cos': '0', 'cos_sin': '0'}
-    """
+    """Return the cosine and sine of an angle, and the products that turning a matrix takes."""
     cos, sin = _cosine_and_sine(angle)
     part = _part(angle)
     square = None if part is None else _square(part)

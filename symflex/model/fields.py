@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     from symflex.model.spec import KeyValue, TableValue
 
 FIELD_LIMIT = 100
-UNKNOWN_LIMIT = 12
-"""As many as the order in x that a field may have, :data:`symflex.model.boundary.ORDER_LIMIT`."""
+UNKNOWN_LIMIT = 12  # as high as a field's order in x may be, :data:`symflex.model.boundary.ORDER_LIMIT`
 CONDITION_LIMIT = 200
 SPLIT = "split it into several fields, which conditions may join"
 KEYS = ("domain", "unknowns", "equation", "equations", "conditions", "latex", "doc")

@@ -55,10 +55,7 @@ def read_section(reader: Reader, spec: Spec, name: str) -> TableValue | None:
 
 
 def settled_problems(spec: Spec, problems: Sequence[Diagnostic]) -> list[Diagnostic]:
-    """Return the problems of a specification without those that follow from a lost section.
-
-    A section is lost where it is misspelt, no table, or written below the heading of another one.
-    """
+    """Return problems without those that follow from a section lost as misspelt, no table or misplaced."""
     kept, misplaced = _without_misplaced(spec, problems)
     if misplaced or _has_lost_sections(spec):
         return [p for p in kept if p.code not in CONSEQUENCES]

@@ -34,17 +34,13 @@ from symflex.model.scope import CONSTANT_KINDS, ModelScope
 from symflex.model.units import lower
 
 Key = TypeVar("Key")
-Place = tuple[str, int, int]
-"""An unknown, its point modulo the prime (zero along x), and the order of the derivative."""
+Place = tuple[str, int, int]  # unknown, point modulo the prime (zero along x), order of derivative
 Form = dict["Place | Variable | None", int]  # a linear form; None is the constant one
 
 
 @dataclass(frozen=True, slots=True)
 class Repetition:
-    """A condition or equation whose left side follows from those of ``others``; all by their numbers.
-
-    ``contradicts`` is true when its right side does not follow as well.
-    """
+    """A condition or equation that repeats ``others``, or ``contradicts`` them by its right side."""
 
     condition: int
     others: tuple[int, ...]
@@ -134,10 +130,8 @@ class RandomPoint:
 
 
 def repetitions(forms: Sequence[Form]) -> list[Repetition]:
-    """Return every condition or equation that repeats or contradicts earlier ones.
-
-    One with a right side that contains more than inputs is passed over: nodes and signals may meet it.
-    """
+    """Return every condition or equation that repeats or contradicts earlier ones."""
+    # One with a right side that contains more than inputs is passed over: nodes and signals may meet it.
     repeated: list[Repetition] = []
     reduced: list[tuple[Place, Form, dict[int, int]]] = []
     for number, form in enumerate(forms):

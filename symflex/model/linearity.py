@@ -36,8 +36,7 @@ Degree = Literal["constant", "linear", "unknown"]
 
 EXPONENT_LIMIT = 64  # as in the text of an expression, see :mod:`symflex.expressions.limits`
 SHOWN_PROBLEMS = 20  # more of one expression than anybody reads
-ORDER_LIMIT = 24
-"""Highest derivative at a point; those beyond the field's own order follow from its equations."""
+ORDER_LIMIT = 24  # highest derivative at a point; those beyond a field's order follow from its equations
 DELAY_HINT = "write a delay in [signals] as exp(-s*T), with T free of s, or as a block of type delay"
 FUNCTION_HINT = "of s, roots of one a*s + b are available, and exp, sinh, cosh and tanh of their multiples"
 NONLINEAR = frozenset(
@@ -110,10 +109,7 @@ def without_signal(span: Span | None) -> Diagnostic:
 
 @dataclass(frozen=True)
 class _Degrees:
-    """Finds the degree of every part of an expression, and notes what is wrong.
-
-    With x and F varying in time ``k*x + F`` is linear; ``x*F`` is noted (SF222), and so is ``x + 1`` (SF221).
-    """
+    """Finds the degree of every part of an expression, and notes ``x*F`` (SF222) and ``x + 1`` (SF221)."""
 
     scope: ModelScope
     constant: bool

@@ -92,11 +92,9 @@ def with_loss(element: Element, values: NamedExpressions) -> NamedExpressions:
 
 
 def has_loss_factors(model: Model) -> bool:
-    """Tell whether j belongs to loss factors, so that a model is valid on s = j*omega, omega > 0, alone.
-
-    It does in values of elements and in fields, but beside s, and in ``1 + j*eta``. Elsewhere coefficients
-    are complex at every s, as of a motor's currents in axes that turn, or of a rotor's deflection x + j*y.
-    """
+    """Tell whether j belongs to loss factors, so that a model is valid on s = j*omega, omega > 0, alone."""
+    # It does in values of elements and in fields, but beside s, and in ``1 + j*eta``. Elsewhere coefficients
+    # are complex at every s, as of a motor's currents in axes that turn, or of a rotor's deflection x + j*y.
     if model.imaginary is None:
         return False
     unit, held = Name(IMAGINARY), {IMAGINARY}

@@ -40,8 +40,7 @@ class ExactValue:
 
 ONE: Final = ExactValue(Fraction(1))
 J: Final = ExactValue(Fraction(1), is_imaginary=True)
-IMAGINARY: Final = "j"
-"""The name of the imaginary unit: it means that where the model gives it no other meaning."""
+IMAGINARY: Final = "j"  # the imaginary unit, unless the model gives this name another meaning
 PAIRS_SHOWN: Final = 6  # number of transfer functions that a message lists
 
 
@@ -204,10 +203,7 @@ class OperatingPoint:
 
 @dataclass(frozen=True, slots=True)
 class Signal:
-    """A name in the signal-flow part, equal to its expression.
-
-    An expression that is an :class:`Equation` is one of ``[equations]``, which determine unknowns together.
-    """
+    """A signal's name, with its expression or one of the ``[equations]`` that determine unknowns together."""
 
     name: str
     expression: Expression
@@ -414,13 +410,7 @@ class Model:
 
     @property
     def is_closed_loop(self) -> bool:
-        r"""True when a signal depends on itself: by others, or by what it drives in the network.
-
-        >>> from symflex import pipeline
-        >>> text = 'symflex = 1\ninputs.r = {}\nsignals.y = "2*(r - y)"\noutputs.y_out = "y"'
-        >>> pipeline.loads(text).is_closed_loop
-        True
-        """
+        """True when a signal depends on itself: by others, or by what it drives in the network."""
         network = {n.name for n in self.nodes} | {use.name for use in self.elements}
         uses: dict[str, set[str]] = {"": set()}
         owned = [(d.name, d.expression) for d in self.definitions]

@@ -443,13 +443,11 @@ WORDS = {
 
 
 def infer_nodes(attachments: Sequence[Attachment]) -> tuple[tuple[NetworkNode, ...], list[Diagnostic]]:
-    """Return the nodes in order of appearance, with every contradiction found.
-
-    A node touched by a planar element, or named with ``.y`` or ``.theta``, is planar; translational
-    elements then act on y and rotational ones on theta. Where it is touched by a frame, named with ``.x`` or
-    carried along, it moves along x as well, and a translational element says which of the two it acts on.
-    Otherwise all elements must agree.
-    """
+    """Return the nodes in order of appearance, with every contradiction found."""
+    # A node touched by a planar element, or named with ``.y`` or ``.theta``, is planar; translational
+    # elements then act on y and rotational ones on theta. Where it is touched by a frame, named with ``.x``
+    # or carried along, it moves along x as well, and a translational element says which of the two it acts
+    # on. Otherwise all elements must agree.
     problems: list[Diagnostic] = []
     first: dict[str, Attachment] = {}
     claims: dict[str, dict[str, Attachment]] = {}

@@ -140,12 +140,10 @@ def linearised(
     numbers: Mapping[str, Expression],
     signed: Collection[str],
 ) -> tuple[tuple[Signal, ...], list[Definition], OperatingPoint | None, Mapping[str, Fraction]]:
-    """Return signals with linear equations, definitions of values at rest, the point, and solved parameters.
-
-    ``moving`` are all names that vary, ``constants`` all that do not, with the expressions of those that are
-    defined; ``numbers`` are the values of parameters, ``signed`` those that may be negative. Without an
-    operating point only derivatives are rewritten, as products with s.
-    """
+    """Return linear signals, definitions of values at rest, the operating point, and solved parameters."""
+    # ``moving`` are all names that vary, ``constants`` all that do not, with the expressions of those that
+    # are defined; ``numbers`` are the values of parameters, ``signed`` those that may be negative. Without an
+    # operating point only derivatives are rewritten, as products with s.
     equations = {x.name: x.expression for x in signals if isinstance(x.expression, Equation)}
     primes = (isinstance(n, Derivative | Differentiated) for e in equations.values() for n in nodes(e))
     if not equations or (rest is None and not any(primes)):

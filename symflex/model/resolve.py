@@ -235,11 +235,9 @@ def _check_count(reader: Reader, spec: Spec, outputs: Sequence[Output], inputs: 
 
 
 def _in_order(problems: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
-    """Return the problems in the order of the text, each once; those of other files come last.
-
-    A name that is unknown or can be read two ways is one problem, however often it occurs: the first place
-    is shown, with the lines of the others.
-    """
+    """Return the problems in the order of the text, each once; those of other files come last."""
+    # A name that is unknown or can be read two ways is one problem: the first place is shown, with the
+    # lines of the others.
     unique = list(dict.fromkeys(problems))
 
     def place(problem: Diagnostic) -> tuple[int, str, int]:

@@ -24,8 +24,7 @@ from symflex.model.model import (
 )
 from symflex.quantities import IMAGINARY_NAMES, IMAGINARY_UNIT
 
-COORDINATE = "x"
-"""The coordinate in coefficients that vary along it, unless the model calls something else by this name."""
+COORDINATE = "x"  # the coordinate, along which coefficients vary, unless the model gives x another meaning
 Kind = Literal[
     "laplace", "pi", "coordinate", "parameter", "definition", "block", "variable", "through", "broken"
 ]
@@ -44,16 +43,12 @@ WHERE_J = (
     "allowed in lengths and outputs; for j*omega write s"
 )
 LISTED_NAMES = 8  # names that a hint lists
-COMPARED_NAMES = 500
-"""Names among which the nearest to a misspelt one is sought: comparing so many takes 3 ms a mistake."""
+COMPARED_NAMES = 500  # names compared with a misspelt one: comparing so many takes 3 ms a mistake
 
 
 @dataclass(frozen=True, slots=True)
 class Meaning:
-    """What a name stands for; ``described`` says it in words for messages.
-
-    A ``broken`` name stands where it is declared next to a mistake, which is reported there and only there.
-    """
+    """What a name stands for, ``described`` in words; a ``broken`` one was declared with a mistake."""
 
     kind: Kind
     name: str

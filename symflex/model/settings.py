@@ -106,13 +106,7 @@ def _settled(reader: Reader, parameter: DeclaredParameter, given: Setting) -> De
 def spread_box(
     parameters: Iterable[ModelParameter], share: Fraction | None = None
 ) -> dict[str, tuple[Fraction, Fraction]]:
-    """Return the ends of each parameter that has a ``spread``, or of all for a share; SF804 for none.
-
-    >>> from symflex.model.model import ExactValue, ModelParameter
-    >>> m = ModelParameter("m", ExactValue(Fraction(2)), spread=Fraction(1, 10))
-    >>> spread_box([m]), spread_box([m], Fraction(1, 2))
-    ({'m': (Fraction(9, 5), Fraction(11, 5))}, {'m': (Fraction(1, 1), Fraction(3, 1))})
-    """
+    """Return the ends of each parameter that has a ``spread``, or of all for a share; SF804 for none."""
     box = {}
     for p in parameters:
         spread = p.spread if share is None else share
@@ -160,13 +154,11 @@ def with_numbers(
     *,
     in_kernels: bool = False,
 ) -> Model:
-    """Return a model whose valued parameters are replaced by exact numbers; the others stay symbolic.
-
-    Its transfer functions, bound, are those of the model; deriving them costs no symbols. Parameters in
-    ``symbolic`` stay so; ``values`` stand in place of declared ones. A distributed model is returned as it
-    is: wavenumbers and kernels are named by their parameters, and values are put in when they are bound. With
-    ``in_kernels`` numbers stand there, too, as they may in the nested form.
-    """
+    """Return a model whose valued parameters are replaced by exact numbers; the others stay symbolic."""
+    # Its transfer functions, bound, are those of the model; deriving them costs no symbols. Parameters in
+    # ``symbolic`` stay so; ``values`` stand in place of declared ones. A distributed model is returned as it
+    # is: wavenumbers and kernels are named by their parameters, and values are put in when they are bound.
+    # With ``in_kernels`` numbers stand there, too, as they may in the nested form.
     if model.is_distributed and not in_kernels:
         return model
     given = {**{p.name: p.value for p in model.parameters}, **(values or {})}

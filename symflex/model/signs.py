@@ -475,11 +475,9 @@ def line_of(model: Model, values: Iterable[tuple[str, ExactValue]]) -> Line:
 
 
 def follows_inputs(use: PlacedElement, line: Line, inputs: Collection[str]) -> bool:
-    """Tell whether a source follows inputs alone: it is a support or a free node where these rest.
-
-    It may follow derivatives of them, as inertia does a support's acceleration, but no filter, which has
-    poles of its own.
-    """
+    """Tell whether a source follows inputs alone: it is a support or a free node where these rest."""
+    # It may follow derivatives, as inertia does a support's acceleration, but no filter with poles of its
+    # own.
     allowed = {"pi", LAPLACE, *inputs, *line.values}
     return all(
         (used := line.opened_names(value)) <= allowed

@@ -127,10 +127,8 @@ def constant_measure(
     inherited: Sequence[ModelParameter],
     definitions: Sequence[Definition],
 ) -> Callable[[Expression], Dimension | None]:
-    """Return a function that tells the dimension of an expression of parameters, ``None`` when it is open.
-
-    A parameter without unit is taken for a number, as the ``n`` of a ratio ``n*r`` mostly is.
-    """
+    """Return a function that tells the dimension of an expression of parameters, ``None`` when it is open."""
+    # A parameter without unit is taken for a number, as the ``n`` of a ratio ``n*r`` mostly is.
     plain = Quantity(Fraction(1), 0, 0, DIMENSIONLESS, 0, "")
     quantities = {name: given or plain for name, given in declared_quantities(declared, inherited).items()}
     scope = build_scope([*quantities], definitions, (), (), (), (), ())

@@ -186,20 +186,14 @@ def arrays_in(name: str, data: bytes, suffix: str) -> Arrays:
 
 
 def responses_of(arrays: Arrays, name: str, stem: str, asked: str = "") -> tuple[MeasuredResponse, ...]:
-    """Return the responses that named arrays hold.
-
-    These are ``frequency_hz`` (n) or ``omega`` [rad/s]; ``values`` (n, or m rows of n, or more dimensions of
-    which the last is n), ``re`` and ``im``, or ``mag`` and ``phase``; names are compared without case, and
-    some usual ones are understood. ``coherence``, ``averages``, ``window``, ``unit``, ``tf`` (m names),
-    ``synthetic`` where known. Fields of structures are found by their last names, each with the frequency
-    nearest above it. A matrix alone has columns: the frequency, then values. ``asked`` names arrays
-    (``f=freq,h=G``) or columns of a matrix, as ``--columns`` does. Messages call the file ``name``;
-    responses are called ``stem`` when the file gives no name.
-
-    >>> (one,) = responses_of({"F": np.arange(1.0, 9), "H": np.ones(8)}, "a.mat", "a")
-    >>> one.name, one.frequency_hz.size
-    ('a', 8)
-    """
+    """Return the responses that named arrays hold; they are called ``stem`` when the file gives no name."""
+    # The arrays are ``frequency_hz`` (n) or ``omega`` [rad/s]; ``values`` (n, or m rows of n, or more
+    # dimensions of which the last is n), ``re`` and ``im``, or ``mag`` and ``phase``; names are compared
+    # without case, and some usual ones are understood. ``coherence``, ``averages``, ``window``, ``unit``,
+    # ``tf`` (m names), ``synthetic`` where known. Fields of structures are found by their last names, each
+    # with the frequency nearest above it. A matrix alone has columns: the frequency, then values. ``asked``
+    # names arrays (``f=freq,h=G``) or columns of a matrix, as ``--columns`` does. Messages call the file
+    # ``name``.
     arrays = _with_axes(arrays)
     if "=" in asked:
         arrays = _renamed(arrays, asked, name)

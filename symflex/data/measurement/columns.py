@@ -107,34 +107,24 @@ HINT: Final = (
 )
 WITHOUT_TIME: Final = "of a record in time, say the sampling time: --columns {}"
 WITHOUT_AXIS: Final = "if the file has no frequencies, --from HZ --step HZ give them"
-UNDECIDED: Final = 1.5
-"""How much less like a causal function the other reading has to be, as a natural logarithm."""
-WRAPPED: Final = 2 * np.pi * 1.001
-"""The largest range of phases that may have been wrapped, and not written as they go on."""
+UNDECIDED: Final = 1.5  # natural logarithm of how much less causal the other reading has to be
+WRAPPED: Final = 2 * np.pi * 1.001  # largest range of phases that may have been wrapped
 FITS: Final = 1.0  # beyond it numbers are like no causal function: the ratio of energies is beyond a factor e
 DECADE: Final = 10.0  # ratio of the largest and smallest of positive numbers up to which they may well be dB
 LEAST_LEVELS: Final = 1.0  # range [dB] below which positive numbers are rather ratios
 SAME_SIZE: Final = 0.02
-MOST_ALIKE: Final = 0.9
-"""Relative deviation up to which a column is another one, of few digits, and in how many of its lines."""
+MOST_ALIKE: Final = 0.9  # share of lines from which a column is another one, or a counter
 MOST_LISTED: Final = 6  # columns that are not used and are listed by name
 ROUNDED_COHERENCE: Final = 1.01  # up to which coherence was rounded upwards
-EVENLY, HELD = 0.02, 0.1
-"""Median deviation of the steps of a time, of their median; share of equal neighbours that signals have."""
+EVENLY, HELD = 0.02, 0.1  # median deviation of a time's steps; share of equal neighbours in signals
 FILLED: Final = 0.95
-SAME_BAND: Final = 0.5
-"""Share of the lines of each sweep in the band that all of them cover; less are segments of one."""
-SAME_FREQUENCY: Final = 1e-3
-"""Relative distance up to which two columns, of two units perhaps, hold the same frequency."""
-SAME_PHASE: Final = 1e-2
-"""Median difference [rad] up to which columns in degrees and in radians hold the same phase."""
-UNLIKE, CLEARLY = 0.1, 4.0
-"""Mean of 1 - cos of a difference of phases up to which they are alike; how much closer one has to be."""
+SAME_BAND: Final = 0.5  # share of each sweep's lines in the band common to all; with less, they are segments
+SAME_FREQUENCY: Final = 1e-3  # relative distance up to which two columns hold the same frequency
+SAME_PHASE: Final = 1e-2  # median difference [rad] of one phase in degrees and in radians
+UNLIKE, CLEARLY = 0.1, 4.0  # mean of 1 - cos of phases that are alike; how much closer one has to be
 FEWEST_TO_DECIDE: Final = 8
-MOST_DECADES: Final = 18
-"""The decimal logarithm of the highest frequency [Hz]; larger numbers are no logarithms."""
-ROUND: Final = 1e-7
-"""Relative deviation from a decimal of three digits, below which a number was meant to be one."""
+MOST_DECADES: Final = 18  # decimal logarithm of the highest frequency [Hz]: larger ones are no logarithms
+ROUND: Final = 1e-7  # relative deviation from three digits below which a number was meant to be round
 LONGEST_NAME: Final = 200
 BEYOND: Final = 7.0  # how far a magnitude is continued beyond its ends: a factor e^7 in frequency
 
@@ -415,11 +405,9 @@ def assembled(
 
 @np.errstate(all="ignore")  # numbers that are not finite are reported elsewhere
 def _sweeps(one: Assembled, settings: Sequence[Real], guesses: list[str]) -> list[Assembled]:
-    """Return the sweeps of a response that goes through its band more than once.
-
-    Those of one direction and the same frequencies are averaged, unless another column has a setting that
-    changed; others are kept apart, since a response may depend on the direction.
-    """
+    """Return the sweeps of a response that goes through its band more than once."""
+    # Those of one direction and the same frequencies are averaged, unless another column has a setting that
+    # changed; others are kept apart, since a response may depend on the direction.
     lines, starts = one.frequency_hz, [0]
     ways = np.sign(np.diff(lines))
     for turn in (np.flatnonzero(np.diff(ways)) + 1).tolist():
@@ -721,10 +709,8 @@ def _values(
 
 
 def _without_zeros(group: dict[str, DataColumn], guesses: list[str]) -> dict[str, DataColumn]:
-    """Return the columns of a response, the imaginary part left out if it is zero everywhere.
-
-    No response has a phase of zero everywhere: an analyser saved a magnitude as a complex number.
-    """
+    """Return the columns of a response, the imaginary part left out if it is zero everywhere."""
+    # No response has a phase of zero everywhere: an analyser saved a magnitude as a complex number.
     one = group.get("complex") or group.get("real")
     if one is None or not np.any(one.numbers) or np.any(one.numbers.real < 0):
         return group
@@ -853,11 +839,10 @@ def _misfit(lines: Real, size: Real, phase: Real) -> float:
 
 
 def minimum_phase(lines: Real, size: Real) -> Real:
-    """Return the phase [rad] that the magnitude of a function without zeros on the right has.
-
-    2 w/pi times the integral of (ln|H(v)| - ln|H(w)|)/(v^2 - w^2) over v (Bode 1945, chapter 14); beyond
-    its ends the magnitude goes on with the power of frequency that it has there, rounded. Lines may go down.
-    """
+    """Return the phase [rad] that the magnitude of a function without zeros on the right has."""
+    # 2 w/pi times the integral of (ln|H(v)| - ln|H(w)|)/(v^2 - w^2) over v (Bode 1945, chapter 14); beyond
+    # its ends the magnitude goes on with the power of frequency that it has there, rounded. Lines may go
+    # down.
     kept = np.flatnonzero((lines > 0) & (size > 0) & np.isfinite(size) & np.isfinite(lines))
     kept = kept[np.argsort(lines[kept])]
     x, y = np.log(lines[kept]), np.log(size[kept])
@@ -917,8 +902,7 @@ def _missing(columns: Sequence[DataColumn], file: str, header: Span | None) -> D
     return Diagnostic("SF602", f"{message}: unknown column '{unknown.name[:40]}'", unknown.span, hint)
 
 
-SINCE_1970: Final = 1e11
-"""Numbers above which an axis without a name is rather a time in milliseconds than a frequency."""
+SINCE_1970: Final = 1e11  # numbers above which an unnamed axis is a time in milliseconds, no frequency
 MOST_COMPARED: Final = 1000  # lines by which readings are compared
 _READINGS: Final = (("re", "im"), *product(("mag_db", "mag"), ("phase_deg", "phase_rad")))
 """Words of ``--columns`` that make a response in pairs."""
@@ -982,10 +966,8 @@ def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, 
 
 
 def signals(columns: Sequence[npt.NDArray[Any]], end: str = "") -> str:
-    """Return the words of ``--columns`` for an input and an output: columns that change and do not count.
-
-    ``end`` follows them. If more columns change, the text says which these are.
-    """
+    """Return the words of ``--columns`` for an input and an output, and ``end``, from columns that change."""
+    # Columns that count are no signals. If more than two columns change, the text says which these are.
     do_count = [np.sum(np.diff(x) == 1) > MOST_ALIKE * x.size for x in columns]
     changing = [i for i, x in enumerate(columns) if np.ptp(x.real) > 0 and not do_count[i]]
     places = dict(zip(changing, "uy" if len(changing) > 1 else "y", strict=False))

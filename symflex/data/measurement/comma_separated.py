@@ -66,8 +66,7 @@ _IMPLIED: Final = {
 _Rewritten = tuple[bytes, Callable[[Span | None], Span | None], tuple[str, ...]]
 """A text of columns, the function that says where what stands in it comes from, and what was guessed."""
 MOST_TURNED: Final = 12  # lines of a table that are columns
-MOST_UNNAMED: Final = 4
-"""Such lines that may lack names: they are the frequency, two parts of values, and coherence."""
+MOST_UNNAMED: Final = 4  # such lines may lack names: frequency, two parts of values, coherence
 NEAR: Final = 60  # lines above the numbers among which the names of columns are looked for
 
 

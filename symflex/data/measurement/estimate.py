@@ -39,25 +39,19 @@ if TYPE_CHECKING:
 Real = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
 
-SEGMENTS: Final = 8
-"""Segments into which a record is cut by default, without overlap; with half an overlap there are 15."""
+SEGMENTS: Final = 8  # segments of a record by default, without overlap; with half an overlap there are 15
 LONGEST_SEGMENT: Final = 16_384  # samples of a segment: a fit of more lines takes longer than it tells
 LEVELS: Final = 0.02  # share of a step or pulse by which a level may be off
 PULSE: Final = 0.1  # share of a record in which a pulse ends
 SETTLED: Final = 1e-4  # the same, below which what is left needs no window, noise or not
-BELOW_NOISE: Final = 0.1
-"""Share of the smallest amplitude that noise lets see to which a window takes what is left."""
-AT_REST: Final = 0.02
-"""Share of the largest amplitude below which the end of a record is at rest, noise aside."""
-EXCITED: Final = 1e-3
-"""Share of the largest amplitude of the input's spectrum below which a line is not excited."""
-EXCITED_AGAIN: Final = 0.03
-"""The same of a periodic input, where harmonics of a sine are below, and of what a window fades out."""
+BELOW_NOISE: Final = 0.1  # share of the smallest amplitude seen in noise to which a window takes the rest
+AT_REST: Final = 0.02  # share of the largest amplitude below which a record's end is at rest, noise aside
+EXCITED: Final = 1e-3  # share of the largest amplitude of the input's spectrum below which no line is excited
+EXCITED_AGAIN: Final = 0.03  # the same of a periodic input: harmonics, and what a window fades, are below
 SAME_PERIOD: Final = 0.99  # correlation of an input with itself from which it repeats
 BELOW_NYQUIST: Final = {"step": 0.1, "impact": 0.25, "decay": 0.25}
 """Share of the sampling rate up to which lines are used: above, samples mix in what is beyond half of it."""
-SWEPT: Final = 0.4
-"""Share of a line's power in one of :data:`SEGMENTS` from which the input is a sweep; noise has a fifth."""
+SWEPT: Final = 0.4  # share of a line's power in one segment from which an input is a sweep; noise has 0.2
 OF_STEP: Final = "a step"
 HELD: Final = 0.5  # share of samples equal to those before them from which an input is held between samples
 STOPPED: Final = 0.01  # share of a record in whose last level the input is switched off, which is left out
@@ -217,10 +211,8 @@ def _without_hold(made: _Estimated, step_s: float) -> _Estimated:
 
 
 def _of_step(channel: _Channel, how: Estimate) -> _Estimated:
-    """Return the response from a step: the spectrum of the output's increments over the jump.
-
-    An input that is held between samples gives ``G(s) (1 - exp(-s h))/(s h)`` and what samples fold back.
-    """
+    """Return the response from a step: the spectrum of the output's increments over the jump."""
+    # An input that is held between samples gives ``G(s) (1 - exp(-s h))/(s h)`` and what samples fold back.
     assert channel.level is not None
     jump, size = channel.level
     before = float(np.mean(channel.y[:jump])) if jump else 0.0
@@ -268,12 +260,10 @@ def _of_whole(channel: _Channel, how: Estimate, kind: str) -> _Estimated:
 
 
 def _weights(y: Real, noise: float, step_s: float, how: Estimate) -> tuple[Real, str, str]:
-    """Return an exponential window over a response that begins at rest, its name, and what is said of it.
-
-    ``exp(-t/tau)`` over input and output gives the transfer function at ``s = 1/tau + j omega``. If none is
-    asked for, it is as long as it may be to take what the output still does at the end below the noise. Noise
-    that it lets through correlates lines: ``1/(1 + j pi k tau/T)`` on those k apart.
-    """
+    """Return an exponential window over a response that begins at rest, its name, and what is said of it."""
+    # ``exp(-t/tau)`` over input and output gives the transfer function at ``s = 1/tau + j omega``. If none is
+    # asked for, it is as long as it may be to take what the output still does at the end below the noise.
+    # Noise that it lets through correlates lines: ``1/(1 + j pi k tau/T)`` on those k apart.
     from scipy.signal.windows import exponential  # as below
 
     length = y.size * step_s
@@ -323,11 +313,9 @@ def _of_periods(channel: _Channel, period: int) -> _Estimated:
 
 
 def _by_segments(channel: _Channel, how: Estimate) -> _Estimated:
-    """Return Welch's estimate; of a channel that is its own input, the magnitude that white noise would show.
-
-    Poles are in it as in the decay of its correlation function (Natural Excitation Technique, James, Carne &
-    Lauffer 1993), and errors of its lines are independent, as they are not there.
-    """
+    """Return Welch's estimate; of a channel that is its own input, the magnitude under white noise."""
+    # Poles are in it as in the decay of its correlation function (Natural Excitation Technique, James, Carne
+    # & Lauffer 1993), and errors of its lines are independent, as they are not there.
     from scipy import signal  # takes a third of a second, and other files need none of it
 
     n = channel.u.size

@@ -48,8 +48,7 @@ READERS: Mapping[str, Callable[[str, bytes, str, str], tuple[MeasuredResponse, .
 Each takes what messages call the file, its bytes, a name, and what ``--columns`` says. Files with other
 endings are read as text in columns where they are text.
 """
-CERTAIN: Final = 0.95
-"""Coherence of one average that noise alone has on one line in 200 million: ``exp(-0.95/0.05)``."""
+CERTAIN: Final = 0.95  # coherence of one average that noise has on one line in 200 million: exp(-0.95/0.05)
 SAVE_AS: Final = {
     **dict.fromkeys((".xls", ".ods"), "save the sheet as .xlsx or .csv"),
     **dict.fromkeys((".s3p", ".s4p"), "save two of its ports as .s2p"),
@@ -156,10 +155,8 @@ def responses_in_time(
 
 
 def _averaged(responses: Sequence[MeasuredResponse]) -> list[MeasuredResponse]:
-    """Return responses with those of several records of the same length averaged, each as it is sure.
-
-    Lines are weighted by one over their variance, so that the variance of the mean is one over the sum.
-    """
+    """Return responses with those of several records of the same length averaged, each as it is sure."""
+    # Lines are weighted by one over their variance, so that the variance of the mean is one over the sum.
     groups: dict[tuple[str, bytes], list[MeasuredResponse]] = {}
     for i, one in enumerate(responses):
         key = (one.name + one.window, one.frequency_hz.tobytes()) if one.is_record else (str(i), b"")
@@ -195,16 +192,9 @@ def prepared(
     averages: float | None = None,
     window: str | None = None,
 ) -> tuple[MeasuredResponse, ...]:
-    """Return responses with what is known of them, and the lines in a band [Hz] alone.
-
-    ``window`` is ``hann``, ``none`` or ``exponential:`` and a time constant [s]. A record keeps
-    the lines from the first to the last that is no noise, eight at least.
-
-    >>> from symflex.data.measurement import MeasuredResponse
-    >>> (one,) = prepared([MeasuredResponse("A/F", [1.0, 2.0, 3.0], [1, 2, 3])], (1.5, 9.0), averages=8)
-    >>> one.frequency_hz.tolist(), one.averages
-    ([2.0, 3.0], 8)
-    """
+    """Return responses with what is known of them, and the lines in a band [Hz] alone."""
+    # ``window`` is ``hann``, ``none`` or ``exponential:`` and a time constant [s]. A record keeps the lines
+    # from the first to the last that is no noise, eight at least.
     Estimate(window=window or "none")
     if averages is not None and not 1 <= averages <= MOST_AVERAGES:
         raise refused(f"the number of averages is {averages:g}; it must lie between 1 and {MOST_AVERAGES:g}")

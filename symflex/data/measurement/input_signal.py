@@ -31,8 +31,7 @@ from symflex.model.spec.read import read_file
 
 MAX_BYTES: Final = 50_000_000
 ARRAYS: Final = (".npz", ".npy", ".mat", ".h5", ".hdf5", ".tdms", ".json")
-ENDINGS: Final = (".csv", ".txt", ".dat", ".tsv", ".asc", ".lvm", *ARRAYS)
-"""Ends of the names of files that are inputs."""
+ENDINGS: Final = (".csv", ".txt", ".dat", ".tsv", ".asc", ".lvm", *ARRAYS)  # of files that hold inputs
 _UNITS: Final = {
     Fraction(1): "s sec secs second seconds sekunde sekunden",
     Fraction(1, 10**3): "ms msec millis millisecond milliseconds",
@@ -52,8 +51,7 @@ TIME = re.compile(
 _AXIS = re.compile(r"x|x[- _]?axis", re.I)  # names of a column that the unit below shows to be the time
 _COUNTED = re.compile(r"^X,.*Start,Increment,?\nSequence,.*?,([^,\n]+),([^,\n]+),?$", re.M)
 """Above rows that are numbered, and begin at a time, with a distance (oscilloscopes)."""
-BESIDE: Final = 3
-"""Column of the time where what is known of a record stands in those before it (oscilloscopes)."""
+BESIDE: Final = 3  # column of the time if those before it hold what is known of a record (oscilloscopes)
 COMMENTS: Final = ("#", "%", "!", "//")
 HINT: Final = "two columns: time_s, and the value"
 LARGEST_EXPONENT: Final = 400  # of a decimal: far beyond what doubles hold

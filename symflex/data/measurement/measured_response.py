@@ -16,12 +16,9 @@ from symflex.quantities import parse_unit
 _EXPONENTIAL = re.compile(
     r"exponential[\s:=]+((?=[\d.]*[1-9])(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d{1,2})?)\s*s?", re.I
 )
-SMALLEST_NOISE = 1e-6
-"""The least share of incoherent power assumed: a coherence rounded to 1 does not make a line exact."""
-SMALLEST_NOISE_OF_RECORD = 1e-8
-"""The same of records, whose noise is estimated; between samples an input is known to 1e-4 at best."""
-SHARE_OF_MEDIAN = 0.02
-"""No line counts more than fifty times as much as the median one, however its coherence was rounded."""
+SMALLEST_NOISE = 1e-6  # least share of incoherent power: a coherence rounded to 1 makes no line exact
+SMALLEST_NOISE_OF_RECORD = 1e-8  # the same of records, whose input is known to 1e-4 at best between samples
+SHARE_OF_MEDIAN = 0.02  # no line counts more than fifty times the median one, whatever its rounded coherence
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,16 +161,13 @@ class MeasuredResponse:
 MAX_BYTES: Final = 50_000_000
 MAX_LINES: Final = 1_000_000
 MAX_RESPONSES: Final = 100  # larger files are refused before they fill the memory
-MOST_LEFT_OUT: Final = 0.1
-"""Share of lines without a number that are left out; more may be a column that was misread."""
+MOST_LEFT_OUT: Final = 0.1  # share of lines without a number to leave out; more may be a misread column
 MAX_ERRORS: Final = 20  # problems of one file that are listed
 FEWEST_LINES, FEWEST_TO_SCATTER = 3, 8
 MOST_AVERAGES = 1e9  # of a number of averages, beyond which it is a mistake
 SHOWN_NAMES = 8
-SLOWEST, FASTEST = 1e-18, 1e18
-"""Limits of a frequency [Hz]: the fourth power of a ratio of two, squared, is still a double."""
-SMALLEST, LARGEST = 1e-100, 1e100
-"""Of a magnitude: its square, and the square of that over another, have to be numbers too."""
+SLOWEST, FASTEST = 1e-18, 1e18  # limits [Hz]: the eighth power of a ratio of two is still a double
+SMALLEST, LARGEST = 1e-100, 1e100  # magnitudes: squares, and these over another, are numbers too
 
 
 def checked_response(

@@ -35,14 +35,11 @@ Real = npt.NDArray[np.float64]
 
 SEARCHED: Final = 300  # lines among which the names of columns and the first row are sought
 BEGIN: Final = 4  # samples by which it is judged where a record begins
-LONG: Final = 100.0
-"""Sampling time [s] from which a time without a unit may be in milliseconds or microseconds."""
+LONG: Final = 100.0  # sampling time [s] from which a time without unit may be in milliseconds or microseconds
 FEWEST_SAMPLES: Final = 32  # fewer make no response
-JITTER: Final = 0.02
-"""Share of the sampling time by which times may be off even ones without a word: a clock's last digit."""
+JITTER: Final = 0.02  # share of the sampling time by which a clock's last digit may move times
 UNEVEN: Final = 0.5  # the same, from which a sample is missing
-SATURATED: Final = 4
-"""Samples one after the other at an end of a channel's range, from which it looks cut off."""
+SATURATED: Final = 4  # samples in a row at an end of a channel's range, from which it looks cut off
 LEVELS: Final = 10  # different values of a step or of a square wave, and of nothing else
 SAME: Final = 1 - 1e-12  # correlation from which a channel is a multiple of another
 

@@ -23,17 +23,14 @@ from symflex.options import MeasureOptions, band_ends
 Real = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
 
-OVERLAP_WORTH: Final = 0.947
-"""Independent averages per record at half an overlap with a Hann window: 1/(1 + 2/36) (Welch 1967)."""
+OVERLAP_WORTH: Final = 0.947  # averages per record, Hann, half overlap: 1/(1 + 2/36) (Welch 1967)
 SAMPLING: Final = 2.56  # sampling rate over the highest line, as is usual in analysers
 SENSOR_DAMPING: Final = 0.7
 LOWEST_HZ: Final = 1e-15
-HIGHEST_HZ: Final = 1e15
-"""Beyond, squares and slopes of responses leave what doubles can hold; light has 1e15 Hz."""
+HIGHEST_HZ: Final = 1e15  # beyond, squares and slopes of responses are no doubles; light has 1e15 Hz
 MOST_SAMPLES: Final = 20_000_000
 BEYOND: Final = 6  # lines above the highest one shown that are excited too: a window sees that far
-LEAST_EXCITED: Final = 0.5
-"""The excitation begins at half the lowest frequency shown, so that all lines are driven."""
+LEAST_EXCITED: Final = 0.5  # excitation begins at half the lowest frequency shown: all lines are driven
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,13 +96,7 @@ class MeasurementPlan:
 def synthesise(
     name: str, function: Callable[[Real], Complex], plan: MeasurementPlan, unit: str = ""
 ) -> MeasuredResponse:
-    """Return the measurement of a model whose response is a function of frequencies [rad/s]; SF902.
-
-    >>> plan = MeasurementPlan(1.0, 50.0, 0.5, averages=20, noise=0.01)
-    >>> seen = synthesise("y/u", lambda omega: 1 / (1 + 0.01j * omega), plan)
-    >>> seen.values.size, bool(np.all(seen.coherence > 0.9)), seen.is_synthetic
-    (99, True, True)
-    """
+    """Return the measurement of a model whose response is a function of frequencies [rad/s]; SF902."""
     plan.check()
     random = np.random.default_rng(plan.seed)
     size, rate, record = plan.samples, plan.rate_hz, plan.record
@@ -153,11 +144,9 @@ def synthesise(
 
 
 def _interpolated(function: Callable[[Real], Complex], frequency: Real, plan: MeasurementPlan) -> Complex:
-    """Return the response at the frequencies of the whole run, evaluated where it is known to be smooth.
-
-    A run is as long as all its records, and its frequencies are as close as that; a model is evaluated at one
-    in so many of them, by which its shortest memory still is resolved, and interpolated by cubic splines.
-    """
+    """Return the response at the frequencies of the whole run, evaluated where it is known to be smooth."""
+    # A run's frequencies are as close as it is long; a model is evaluated at one in so many of them, by which
+    # its shortest memory still is resolved, and interpolated by cubic splines.
     step = max(1, min(plan.averages // INTERPOLATED, 64))
     if step == 1 or frequency.size < 4 * step:
         return np.asarray(function(2 * np.pi * frequency))

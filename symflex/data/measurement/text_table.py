@@ -39,8 +39,7 @@ _THOUSANDS = re.compile(r"[-+]?\d{1,3}(?:,\d{3})+\.\d+")
 _GAPPED = re.compile(r"[-+]?\d{1,3}(?:['\u2019\u00a0\u2009\u202f]\d{3})+(?:[.,]\d+)?")
 _WITH_UNIT = re.compile(rf"({_NUMBER})\s*(?:([kMG]?)(?:Hz)?|dB|deg|°|Ohm|\u03a9|\u2126)", re.I)
 _PREFIXES: Final = {"": 1.0, "k": 1e3, "m": 1e6, "g": 1e9}
-_APART = re.compile(r"(?<=\d),\s+(?=[-+.\d])")
-"""Between real and imaginary part, where blanks are between columns: ngspice."""
+_APART = re.compile(r"(?<=\d),\s+(?=[-+.\d])")  # between real and imaginary part: ngspice
 _SPACED = re.compile(r"(?<!\s)\s*([-+])\s*(?=[\d.]+(?:e[-+]?\d+)?[ij]m?\b)", re.I)
 _GROUPED = re.compile(r"[-+]?\d{1,3}(?:\.\d{3})+,\d+")
 WHOLE: Final = {d: re.compile(rf"[-+]?[1-9]\d{{0,2}}(?:\{t}\d{{3}})+") for d, t in ((".", ","), (",", "."))}
@@ -53,14 +52,12 @@ _CANDIDATES: Final = (
 """Delimiters and decimal signs; of equals the first is taken."""
 _EASTERN: Final = {"GB18030": "频率", "Shift_JIS": "周波数"}
 """Encodings beside UTF-8, and the word for a frequency by which they are known."""
-SAMPLE, MOST_SAMPLED = 400, 200_000
-"""Lines from the middle of a file by which delimiter and decimal sign are chosen, and their characters."""
+SAMPLE, MOST_SAMPLED = 400, 200_000  # lines from a file's middle that decide delimiter and sign; characters
 MAX_CELLS: Final = 5_000_000  # cells that all rows may have together; reading them takes 15 s and 800 MB
 LONGEST_LINE: Final = 20_000
 LONGEST_NUMBER: Final = 100
 FEWEST_ROWS: Final = 3
-SMALL_SHARE: Final = 10
-"""Blocks with less than a tenth of the rows of the largest are no tables of the same data."""
+SMALL_SHARE: Final = 10  # a block with under a tenth of the rows of the largest is no table of the same data
 
 
 def decoded(name: str, data: bytes) -> tuple[str, tuple[str, ...]]:

@@ -32,8 +32,7 @@ MARK: Final = b"    -1"
 _MARKS: Final = re.compile(rb"    -1[^\S\n]*(?:\n|\Z)")
 HEADER_LINES: Final = 11  # records of a dataset 58 before its data
 RESPONSE, TRANSMISSIBILITY, COHERENCE, MULTIPLE_COHERENCE = 4, 5, 6, 26
-POWERS: Final = (2, 9)
-"""Function types of datasets 58; those of powers are an auto spectrum and a power spectral density."""
+POWERS: Final = (2, 9)  # datasets 58, types of function: auto spectrum, power spectral density
 FREQUENCY_AXIS: Final = 18  # data type of an abscissa that is a frequency
 SPECIFIC_TYPES: Final = {
     8: ("X", "m"), 9: ("F", "N"), 11: ("V", "m/s"), 12: ("A", "m/s^2"), 13: ("F", "N"), 15: ("P", "Pa"),
@@ -50,8 +49,7 @@ DATASETS: Final = {
     15: "nodes", 55: "data at nodes", 58: "functions", 82: "trace lines", 151: "header", 164: "units",
     2411: "nodes", 2412: "elements", 2414: "analysis data", 2420: "coordinate systems",
 }  # fmt: skip
-ORDINATE_TYPES: Final = (2, 4, 5, 6)
-"""Real in single and double precision, complex in single and double precision."""
+ORDINATE_TYPES: Final = (2, 4, 5, 6)  # real, then complex, each in single and double precision
 
 
 _Place = tuple[int, int]  # the line where a dataset 58 begins, and which of all datasets it is

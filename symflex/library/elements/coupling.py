@@ -407,8 +407,7 @@ class ControlledSource(Element):
     """Base of the four controlled sources: a voltage or a current, by a voltage or a current."""
 
     is_voltage: ClassVar[bool]  # whether the value is a voltage
-    by_current: ClassVar[bool]
-    """Whether it follows the current from the first input to the second, which are then one node."""
+    by_current: ClassVar[bool]  # it follows the current from first to second input, then one node
     through = ("i",)
 
     def stamp(self, use: ElementUse) -> Stamp:

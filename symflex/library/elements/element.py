@@ -30,8 +30,7 @@ DOMAINS: tuple[Domain, ...] = ("translation", "rotation", "electrical", "acousti
 ACROSS_UNIT: dict[str, str] = dict(zip(DOMAINS, ("m", "rad", "V", "Pa", "K"), strict=True))
 THROUGH_UNIT: dict[str, str] = dict(zip(DOMAINS, ("N", "N*m", "A", "m^3/s", "W"), strict=True))
 THROUGH_NAME: dict[str, str] = dict(zip(DOMAINS, ("f", "tau", "i", "q", "phi"), strict=True))
-CIRCUITS = DOMAINS[2:]
-"""Domains of nodes whose voltage, pressure or temperature is an effort; mechanical ones have a motion."""
+CIRCUITS = DOMAINS[2:]  # domains in which a node's value is an effort; mechanical ones have a motion
 COMPONENT_UNIT: dict[str, str] = {
     **{THROUGH_NAME[domain]: unit for domain, unit in THROUGH_UNIT.items()},
     **{f"supplied_{THROUGH_NAME[domain]}": unit for domain, unit in THROUGH_UNIT.items()},
@@ -105,11 +104,7 @@ def put_in(terms: Terms, known: Mapping[Variable, Terms]) -> Terms:
 
 @dataclass(frozen=True, slots=True)
 class Admittance:
-    """A two-terminal admittance: ``admittance * (a - b)`` flows from ``a`` to ``b``.
-
-    Parallel branches between the same variables are added before elimination, so a spring
-    and a damper side by side become one sub-impedance ``k + b*s``.
-    """
+    """``admittance * (a - b)`` flows from ``a`` to ``b``; parallel ones are added before elimination."""
 
     a: Variable | None
     b: Variable | None
@@ -118,11 +113,7 @@ class Admittance:
 
 @dataclass(frozen=True, slots=True)
 class EquationRow:
-    """An equation ``form = 0`` that determines (or constrains) ``about``.
-
-    An element's or constraint's law; in the equations of a model also a node's balance, a signal's law or a
-    field's condition. A variable may occur several times in ``form``, once per branch that meets it.
-    """
+    """An equation ``form = 0`` for ``about``; a variable may stand in it once per branch that meets it."""
 
     about: Variable
     form: LinearForm
@@ -139,10 +130,7 @@ class Injection:
 
 @dataclass(frozen=True, slots=True)
 class Stamp:
-    """The contribution of one element: unknowns, rows, branches and injections.
-
-    ``through`` gives the element's quantities (``motor.i``) as linear forms.
-    """
+    """One element's unknowns, rows, branches, injections, and quantities (``motor.i``) as linear forms."""
 
     branches: tuple[Admittance, ...] = ()
     injections: tuple[Injection, ...] = ()
@@ -197,10 +185,7 @@ class Passivity:
 
 @dataclass(frozen=True, slots=True)
 class PortTerminal:
-    """The across variables of one attached node, ``None`` if it is the reference.
-
-    A non-planar node has only ``across``; a planar one has ``y`` and ``theta``, and ``x`` in the plane.
-    """
+    """Across variables of a node, ``None`` at the reference: ``across``, or ``y``, ``theta`` and ``x``."""
 
     across: Variable | None = None
     y: Variable | None = None
@@ -256,8 +241,7 @@ class Element(Stateless, ABC):
     is_source: ClassVar[bool] = False  # it supplies what its value says, and nothing where that rests
     is_inertia: ClassVar[bool] = False
     moves_as_one: ClassVar[bool] = False  # whether all of its nodes lie where one of them lies
-    compliance: ClassVar[Literal["", "stretching", "bending"]] = ""
-    """How it gives way; torsion is stretching about an axis."""
+    compliance: ClassVar[Literal["", "stretching", "bending"]] = ""  # torsion is stretching about an axis
     carries_x: ClassVar[bool] = False  # whether all of its planar nodes move along x where one of them does
     stiffness: ClassVar[str] = ""  # the parameter with which a massless element becomes rigid
     damping: ClassVar[str] = ""  # the parameter of a damper without which there is none
@@ -295,11 +279,9 @@ def delivered(use: ElementUse, port: str, form: LinearForm) -> tuple[Injection, 
 
 
 def two_terminal(use: ElementUse, port: str, quantity: str, admittance: Factored) -> Stamp:
-    """Return the stamp of ``through = admittance * (a - b)``.
-
-    An admittance whose denominator depends on s (a relaxing spring, say) gets a through unknown of its own,
-    so that the equations stay polynomial and no root is added to the determinant.
-    """
+    """Return the stamp of ``through = admittance * (a - b)``."""
+    # An admittance whose denominator depends on s (a relaxing spring, say) gets a through unknown of its own,
+    # so that the equations stay polynomial and no root is added to the determinant.
     ends = use.across(port)
     a, b = ends if len(ends) == 2 else (ends[0], None)  # noqa: PLR2004
     denominator = admittance.denominator()

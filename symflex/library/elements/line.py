@@ -51,10 +51,8 @@ class LineElement(Element):
 
     @property
     def along(self) -> tuple[tuple[str, ...], ...]:
-        """What its state is called at a point, ``arm.y(l/2)``: each quantity by all its names, in order.
-
-        ``f`` and ``tau`` at a point are what the part beyond it exerts on the part before it.
-        """
+        """What its state is called at a point, ``arm.y(l/2)``: each quantity by all its names, in order."""
+        # ``f`` and ``tau`` at a point are what the part beyond it exerts on the part before it.
         domain = self.ports[0].domain
         across = {"planar": (("y",), ("theta",)), "rotation": (("theta",),)}.get(domain, (("u", "y"),))
         return (*across, *((quantity,) for quantity in self.through))

@@ -196,10 +196,8 @@ REACTIONS = {"x": "f_x", "y": "f", "theta": "tau"}  # what holds a component of 
 
 
 def _hold(use: ElementUse, held: Mapping[str, str]) -> Stamp:
-    """Return the stamp that keeps components of a node at zero, or at those of a second node.
-
-    ``held`` gives the reaction, delivered into the (first) node, by component.
-    """
+    """Return the stamp that keeps components of a node at zero, or at those of a second node."""
+    # ``held`` gives the reaction, delivered into the (first) node, by component.
     first, *others = use.terminals["at"]
     second = others[0] if others else PortTerminal()
     kept = [(use.unknown(q), q, getattr(first, c), getattr(second, c)) for c, q in held.items()]

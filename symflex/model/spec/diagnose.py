@@ -31,16 +31,7 @@ _SHOWN = 40
 
 
 def diagnose_unclosed(source: Source, text: str, statement: Statement) -> Diagnostic:
-    r"""Return the diagnostic of a statement with a quote or bracket that is never closed.
-
-    >>> from symflex.model.spec.scan import scan
-    >>> source = Source("a.toml", 'm = "60 kg\n')
-    >>> print(diagnose_unclosed(source, source.text, scan(source).statements[0]).render())
-    a.toml:1:5: error[SF101]: the string opened here is never closed: "60 kg
-      1 | m = "60 kg
-        |     ^^^^^^
-      hint: add the closing quote: "
-    """
+    """Return the diagnostic of a statement with a quote or bracket that is never closed."""
     start = statement.start if statement.unclosed is None else statement.unclosed
     mark = text[start]
     if mark not in "\"'":

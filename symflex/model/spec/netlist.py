@@ -105,18 +105,7 @@ class Circuit:
 
 
 def specification_of(source: Source, read: Callable[[str], Source]) -> str:
-    r"""Return the text of a specification; SF105 for a line that cannot be read. ``read`` reads others.
-
-    >>> text = "low-pass\nV1 in 0 AC 1\nR1 in out 10k\nC1 out 0 4n7 ; ceramic\n.end"
-    >>> print(specification_of(Source("rc.cir", text), Source))  # doctest: +ELLIPSIS
-    symflex = 1
-    title   = "low-pass"
-    <BLANKLINE>
-    [parameters]
-    R1 = "10 kOhm"
-    C1 = "4.7 nF"
-    ...
-    """
+    """Return the text of a specification; SF105 for a line that cannot be read. ``read`` reads others."""
     title, lines, comments = _statements(source)
     reader = _Netlist(read, {})
     reader.circuit.comments = comments

@@ -22,14 +22,7 @@ _HEADER_PATH = rf"\[{{0,2}}[ \t]*+({KEY})"
 
 
 def parse(source: Source) -> Spec:
-    r"""Parse a specification: TOML 1.0; SF101, SF102 for at most 20 errors, or SF103 beyond a limit.
-
-    >>> from symflex.errors import Source
-    >>> spec = parse(Source("a.toml", '[parameters]\nm_1 = 0.1\n'))
-    >>> mass = spec.root.get("parameters").value.get("m_1")
-    >>> mass.value.value, str(mass.key_span)
-    (Fraction(1, 10), 'a.toml:2:1')
-    """
+    """Parse a specification: TOML 1.0; SF101, SF102 for at most 20 errors, or SF103 beyond a limit."""
     spec, diagnostics = parse_with_recovery(source)
     if diagnostics:
         raise SpecError(*diagnostics)
@@ -37,22 +30,10 @@ def parse(source: Source) -> Spec:
 
 
 def parse_with_recovery(source: Source) -> tuple[Spec, tuple[Diagnostic, ...]]:
-    r"""Parse what is right of a specification, and report what is not, in the order of the text.
-
-    A key whose value is wrong keeps an ``OtherValue("invalid", ...)``, so that its name is still known; under
-    a header that is wrong or repeated, entries go to the table it seems to name. Raises SpecError: SF103 when
-    the text passes a limit; nothing is then kept of it.
-
-    >>> from symflex.errors import Source
-    >>> spec, problems = parse_with_recovery(Source("a.toml", 'm_1 = 60 kg\nm_2 = "20 kg"\n'))
-    >>> print(problems[0].render())
-    a.toml:1:7: error[SF101]: '60 kg' is neither a number nor quoted text
-      1 | m_1 = 60 kg
-        |       ^^^^^
-      hint: put it in quotes: "60 kg"
-    >>> spec.root.keys()
-    ('m_1', 'm_2')
-    """
+    """Parse what is right of a specification, and report what is not, in the order of the text."""
+    # A key whose value is wrong keeps an ``OtherValue("invalid", ...)``, so that its name is still known;
+    # under a header that is wrong or repeated, entries go to the table it seems to name. Raises SpecError:
+    # SF103 when the text passes a limit; nothing is then kept of it.
     scanned = scan(source)
     repair = _Repair(source, scanned)
     for statement in scanned.statements:

@@ -79,10 +79,8 @@ def _frozen(value: _Table | _Tables | Value) -> Value:
 
 
 def locate(document: Document, decoded: Mapping[str, Any]) -> TableValue:
-    """Give every value that tomllib made of a text its place, floats being :class:`Literal`.
-
-    Raises SpecError: SF101 where tomllib accepts what is not TOML 1.0 (it is newer in later Pythons).
-    """
+    """Give every value that tomllib made of a text its place, floats being :class:`Literal`."""
+    # Raises SpecError: SF101 where tomllib accepts what is not TOML 1.0 (it is newer in later Pythons).
     tree = Parser(_TOML).parse(document.masked.encode("ascii"))
     if tree.root_node.has_error:
         span = _PositionReader(document).span(_first_error(tree.root_node))

@@ -17,22 +17,14 @@ DATA: Final = (
     ".tdms", ".xlsx", ".lvm",
 )  # fmt: skip
 """Ends of the names of files that contain measured data and never a specification."""
-NETLISTS: Final = (".cir", ".net", ".sp", ".ckt")
-"""Ends of the names of SPICE netlists, which are read as specifications."""
+NETLISTS: Final = (".cir", ".net", ".sp", ".ckt")  # ends of names of SPICE netlists, which are read too
 _NUMBERS = re.compile(rb"^[-+\d.][-+\d.e]*[\t ,;]+[-+\d.][-+\d.e \t,;]*\r?\n[-+\d.]", re.M | re.I)
 """Two lines of numbers, as in a table."""
 _UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 
 
 def read(path: str | Path) -> Source:
-    r"""Read the text of a specification, without its byte order mark; line ends are kept as they are.
-
-    It is a regular file, in UTF-8, of at most 1 MB; SF901 else.
-
-    >>> read("no/such.toml")
-    Traceback (most recent call last):
-    symflex.errors.exceptions.UsageError: error[SF901]: cannot read 'no/such.toml': No such file or directory
-    """
+    """Read a specification's text without byte order mark; SF901 unless a UTF-8 file of at most 1 MB."""
     name = os.fspath(path)
     data = read_file(name, MAX_BYTES)
     if name.lower().endswith(DATA) or (_NUMBERS.search(data) and b"symflex" not in data):

@@ -24,21 +24,11 @@ _BITS_PER_DIGIT = 3.3219280948873626  # log2(10)
 
 
 def write(mapping: Mapping[str, object]) -> str:
-    r"""Render nested values as the text of a specification.
-
-    The two outer levels become ``[a]`` and ``[a.b]`` headers; what is deeper, and what stands in
-    `parameters`, `elements`, `inputs`, `outputs` and `blocks`, becomes inline tables. Values are str, int,
-    Fraction, Decimal, float, bool, list, tuple, arrays of numpy, expressions of SymPy, and mappings of
-    these; a fraction that is not a finite decimal becomes the string ``"p/q"``.
-    :func:`symflex.model.spec.parse` gives the mapping back.
-
-    >>> print(write({"symflex": 1, "parameters": {"m": {"value": "2 kg"}, "k": Fraction(1, 3)}}), end="")
-    symflex = 1
-    <BLANKLINE>
-    [parameters]
-    m = { value = "2 kg" }
-    k = "1/3"
-    """
+    """Render nested values as the text that :func:`symflex.model.spec.parse` reads as the mapping."""
+    # The two outer levels become ``[a]`` and ``[a.b]`` headers; what is deeper, and what stands in
+    # `parameters`, `elements`, `inputs`, `outputs` and `blocks`, becomes inline tables. Values are str, int,
+    # Fraction, Decimal, float, bool, list, tuple, arrays of numpy, expressions of SymPy, and mappings of
+    # these; a fraction that is not a finite decimal becomes the string ``"p/q"``.
     blocks = [_block("", [(key, v) for key, v in _items(mapping, ()) if not isinstance(v, Mapping)], ())]
     for name, section in _items(mapping, ()):
         if isinstance(section, Mapping):
