@@ -420,8 +420,11 @@ class _AboutRest:
             if name in self.rest.multipliers:
                 self.definitions.append(Definition(name, number(0), "", self.rest.span))
                 continue
-            message = f"no equation at rest determines '{name}'"
-            self.reader.note("SF407", message, self.rest.span, "leave it out of solve")
+            message, hint = f"no equation at rest determines '{name}'", "leave it out of solve"
+            rates = [r for r, value in self.values.items() if r[-1] == "'" and Name(name) in nodes(value)]
+            if rates:  # r' = w - p gives the rate of r, not w
+                hint = f'write "{rates[0]}" = "0" if \'{rates[0][:-1]}\' is at rest too, or {hint}'
+            self.reader.note("SF407", message, self.rest.span, hint)
 
     def _note_left(self, rest: Expression, equation: Equation, unknown: str | None) -> None:
         size = ""
