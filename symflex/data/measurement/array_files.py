@@ -29,7 +29,7 @@ import numpy.typing as npt
 
 CUT = "it is cut short"
 SHOWN = 80  # characters of a message that quotes a file
-LAST_CHARACTER: Final = 0x10FFFF
+LAST_CHARACTER: Final = 0x10FFFF  # the end of the range of Unicode
 SURROGATES: Final = (0xD800, 0xDFFF)  # halves of pairs, which are not characters (Unicode 15, section 3.9)
 DIMENSIONS_LIMIT = 32  # of numpy 1; version 2 takes 64
 
