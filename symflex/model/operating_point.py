@@ -437,6 +437,8 @@ class _AboutRest:
         if unknown is not None:
             message = f"'{unknown}' is not found: {format_expression(rest)} has no root next to its value"
             hint = f"give '{unknown}' a value close to the one at rest, and all other parameters theirs"
+            if not self.known.keys() >= {*unknown.split(", ")}:  # made names of unknowns cannot be given one
+                hint = f"declare parameters with values close to those at rest, {EXAMPLE}"
         self.reader.note("SF407", message, equation.span, hint)
 
     def _solved_by_value(self, rows: list[Expression], unknowns: list[str]) -> list[Fraction]:

@@ -393,3 +393,23 @@ def test_a_rate_that_takes_up_an_input_to_be_solved_is_named():
     with pytest.raises(SpecError, match="no equation at rest determines 'w_0'") as refused:
         _model("Bell, Astrom: boiler and turbine", {n: v for n, v in printed.items() if n != "r'"})
     assert 'write "r\'" = "0"' in refused.value.diagnostics[0].hint
+
+
+def test_a_cube_to_be_solved_for_asks_for_a_declared_value():
+    equations = {"unknowns": ["x"], "equations": ["x' = u^3 - x^3"]}
+    with pytest.raises(SpecError, match="'u_0' is not found") as refused:
+        Model(
+            equations=equations,
+            operating_point={"x": "2", "solve": ["u"]},
+            inputs={"u": {}},
+            outputs={"X": "x"},
+        )
+    assert "declare parameters with values close" in refused.value.diagnostics[0].hint
+    declared = Model(
+        parameters={"c": 1.9},
+        equations=equations,
+        operating_point={"x": "2", "u": "c", "solve": ["c"]},
+        inputs={"u": {}},
+        outputs={"X": "x"},
+    )
+    assert declared.transfer_function("X/u").bind()(1) == pytest.approx(12 / 13)
