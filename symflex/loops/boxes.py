@@ -194,8 +194,14 @@ class CharacteristicFunction:
             if not any(value.contains(0) for value, _ in around):
                 continue
             turns = [slope * way for _, slope in around]
-            at_point = own.at(start + way * ball(point), ones, near)
-            values = [(c, [x * half for x, half in zip(xs, own.halves, strict=True)]) for c, xs in at_point]
+            if not low:
+                # Where the box alone leaves a root at the start, no shorter piece does without it.
+                values = own.swings(start, ones, near)
+                share, weights = max((share_taken(c, terms) for c, terms in values), key=lambda each: each[0])
+                if share >= 1 and _is_within([turn * ball(high) for turn in turns], values):
+                    left[low, high] = weights, _line(*values[0], turns[0]) if len(ones) == 1 else ()
+                    continue
+            values = own.swings(start + way * ball(point), ones, near)
             steps = [turn * ball(high - point) for turn in turns]
             shares = [share_taken(c, [*terms, step]) for (c, terms), step in zip(values, steps, strict=True)]
             if all(share < 1 for share, _ in shares):
@@ -203,15 +209,13 @@ class CharacteristicFunction:
             # Where the box alone leaves it open, or nearly so, and as much as the piece, this is not halved.
             share, (*weights, by_piece) = max(shares, key=lambda each: each[0])
             is_open = share - by_piece > 1 - NEARLY
-            wide = sum((term.abs_upper() for _, terms in values for term in terms), arb(0))
-            is_spent = not wide.is_finite() or sum((step.abs_upper() for step in steps), arb(0)) <= wide
-            line: Line = ()
-            begin, end = low, high
+            is_spent = _is_within(steps, values)
+            begin, end, line = low, high, Line()
             if len(ones) == 1:
                 ((centre, terms),), (turn,) = values, turns
                 step = sum((term * arb(0, 1) for term in terms), centre) / turn
                 if step.is_finite():
-                    line = tuple((each / turn).imag for each in (centre, *terms))
+                    line = _line(centre, terms, turn)
                     rest = ball(point) - step.real
                     begin, end = max(low, _fraction(rest.lower())), min(high, _fraction(rest.upper()))
             if begin > end:
@@ -304,6 +308,11 @@ class FirstOrder:
         values = [wide.value(i, near, wide.largest([i], near)) for i in ones]
         return [(at_centre(value), _slope(value)) for value in values]
 
+    def swings(self, s: acb, ones: Sequence[int], near: Place) -> list[tuple[acb, list[acb]]]:
+        """Return values at the middle of the box, and by how much every parameter's half range moves each."""
+        halves = self.halves
+        return [(c, [x * h for x, h in zip(xs, halves, strict=True)]) for c, xs in self.at(s, ones, near)]
+
     def at(self, s: acb, ones: Sequence[int], near: Place | None = None) -> list[tuple[acb, list[acb]]]:
         """Return values at the middle of the box and slopes in every parameter, on the branch of ``near``."""
         near = near or self.generators(s)
@@ -315,6 +324,17 @@ class FirstOrder:
             slopes = [_slope(each.value(i, at, less)) for each, at in points]
             found.append((at_centre(middle.value(i, centre, less)), slopes))
         return found
+
+
+def _is_within(steps: Sequence[acb], values: Sequence[tuple[acb, list[acb]]]) -> bool:
+    """Tell whether a piece of the path contributes no more than the box does, or the box without end."""
+    wide = sum((term.abs_upper() for _, terms in values for term in terms), arb(0))
+    return not wide.is_finite() or bool(sum((step.abs_upper() for step in steps), arb(0)) <= wide)
+
+
+def _line(centre: acb, terms: Sequence[acb], turn: acb) -> Line:
+    line = tuple((each / turn).imag for each in (centre, *terms))
+    return line if all(each.is_finite() for each in line) else ()
 
 
 def share_taken(centre: acb, terms: Sequence[acb]) -> tuple[float, list[float]]:

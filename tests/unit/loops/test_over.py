@@ -184,6 +184,19 @@ def test_limits_of_one_parameter_and_of_charts_are_those_that_pages_print(
     assert min(abs(k - goal[0]) + abs(t - goal[1]) for c in chart.boundaries for k, t, _ in c) < 0.05
 
 
+def test_a_chart_across_a_pole_at_0_is_decided() -> None:
+    # K = 1 takes the pole (1 - K)/a through 0, where every shorter piece of the axis holds it as well.
+    plant = Model(
+        parameters={"K": 3, "a": 1},
+        signals={"y": "K/(a*s - 1)*(r - y)"},
+        inputs={"r": {}},
+        outputs={"Y": "y"},
+    )
+    chart = plant.stability(over=("K", "a"), ranges={"K": (0.5, 8), "a": (0.3, 3)})
+    assert chart.decided >= 0.99
+    assert [chart.at(k, 1) for k in (0.7, 1.5, 7)] == ["unstable by 1", "stable", "stable"]
+
+
 def test_the_largest_box_about_the_declared_values_ends_at_the_boundary() -> None:
     chart = LAG.stability(over=("a", "T"), ranges={"a": (0, 4), "T": (0, 3)})
     box = chart.largest_box()
