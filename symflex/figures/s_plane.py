@@ -194,7 +194,7 @@ def _number(value: float) -> str:
 POINTS_PER_INCH: Final = 72.0
 MARK_POINTS: Final = 3.2  # half the size of a cross or circle, with its line
 PAD_POINTS: Final = 1.5  # space between a note and the frame
-LISTED: Final = 5  # roots that are named at one arrow; of the others their number is told
+LISTED: Final = 5  # roots that one arrow names; the others are counted
 NOTE_LINE_POINTS: Final = 8.5
 LEAST_NOTE_POINTS: Final = 6.0
 ARROW: Final = 0.13  # length of an arrow over the smaller side of its panel

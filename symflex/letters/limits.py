@@ -302,7 +302,7 @@ class LimitFinder:
     ) -> dict[Key, Factored]:
         """Return a function of a pair of wavenumbers up to a power of s, without all that is even in them.
 
-        Of ``u x + v`` a symmetric function has u = 0, one that changes its sign is ``u (x - y)/2``.
+        In ``u x + v``, u = 0 for a symmetric function; one that changes its sign is ``u (x - y)/2``.
         """
         i, j = map([*self.laws].index, law.wavenumbers)
         one, other = (Factored.generator(self._ring, name) for name in law.wavenumbers)

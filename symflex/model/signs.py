@@ -48,7 +48,7 @@ Polynomial = dict[Monomial, Fraction]
 
 TERM_LIMIT = 64
 DEGREE_LIMIT = 64
-BIT_LIMIT = 4_000  # lengths people write stay far below; beyond, no sign is told rather than much computed
+BIT_LIMIT = 4_000  # lengths people write stay far below; beyond, the sign is left open
 
 
 @dataclass(frozen=True)

@@ -50,7 +50,7 @@ class PublishedReport:
 def written(
     given: ReportOptions, progress: Progress, said: Callable[[str], None]
 ) -> tuple[PublishedReport, Report]:
-    """Write the report that options ask for; ``said`` is told how many models and responses there are.
+    """Write the report that options ask for; ``said`` receives the number of models and responses.
 
     Raises SpecError, ModelError with every problem of all files before anything is computed; UsageError.
     """

@@ -35,7 +35,7 @@ from symflex.sweep.design import Point, Range, Rows, Solver, Task, between, code
 from symflex.sweep.similarity import Similarities, Similarity
 from symflex.transfer import AnyBoundFunction, AnyTransferFunction, bind_any
 
-LARGEST = 1023  # exponent of two beyond which nothing is told
+LARGEST = 1023  # exponent of two from which a number may not fit a double
 
 
 @dataclass(frozen=True, slots=True)

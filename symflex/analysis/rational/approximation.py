@@ -251,7 +251,7 @@ class RationalApproximation(Printed, Approximant, RationalFunction):
     band : tuple of float
         The band of :attr:`error` [Hz].
     stability : StabilityVerdict
-        Of G and its hidden modes; all poles of G in the right half-plane that are known are poles of R.
+        That of G and its hidden modes; R has all known poles of G in the right half-plane.
     """
 
     bound: AnyBoundFunction

@@ -52,7 +52,6 @@ REAL = 1e-9  # share of a pole's magnitude from which its imaginary part makes i
 
 FEW_POWERS = (0, 1)  # the same to find poles outside the band: what they add looks like powers of s
 
-# Of delays.
 PER_TURN = 5  # delays tried per turn of the phase at the highest line
 MOST_TURNS = 40.0
 LEAST_TURNS = 2.0  # of the phase at the highest line: how far the delays tried reach, at most and at least

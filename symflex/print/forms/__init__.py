@@ -76,7 +76,7 @@ FORMS: dict[str, Arrange] = {
     "frequency": _later("frequency"),
 }
 
-DECIMAL_FORMS = ("zpk",)  # those that print decimals, of so many digits as they are told
+DECIMAL_FORMS = ("zpk",)  # those that print decimals, to the digits requested
 OF_SUMS = ("hyperbolic", "factored")  # those that may have kernels of two lengths and of their sum
 AS_ARRANGED = ("zpk", "frequency")  # those that are not functions of s, or print decimals anyway
 LARGE = 300  # number of expanded terms from which only the closed form is tried: no expanded print is shorter

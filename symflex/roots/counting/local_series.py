@@ -126,7 +126,7 @@ def bound_on_circle(function: Entire, centre: acb, reach: arb, arcs: int) -> arb
         return None
 
 
-LEAST = 2  # coefficients without which nothing can be told
+LEAST = 2  # coefficients that a decision needs at least
 FEWEST = 20  # terms where a bound is as small as the function
 MOST = 250  # terms; where more were needed, shorter steps are better
 STEP_SHRUNK = 0.25  # radius of the circle where values are taken, over that where they are bounded

@@ -129,7 +129,7 @@ def test_as_many_minors_as_the_limit_are_kept_and_not_one_more(monkeypatch, abov
 def test_minors_of_determinants_before_count(monkeypatch):
     rows, ring = full(3)
     wide = tuple({**row, 3: ring.constant(1)} for row in rows)
-    # Of columns 0, 1, 2: 7. With 3 in place of 2, those that contain 3: 1 + 2 + 1.
+    # Columns 0, 1, 2 have 7 minors. With 3 in place of 2, those that contain 3 are new: 1 + 2 + 1.
     monkeypatch.setattr(module, "MINOR_LIMIT", 7 + 4 - 1)
     minors = Minors(wide, ring=ring)
     assert refused(lambda: minors.determinant(0b0111)) is None
