@@ -204,8 +204,8 @@ class _Assembly:
     lines: dict[str, tuple[LineElement, ElementUse]] = field(default_factory=dict)
     # Per line element or field, the points within at which it is cut.
     cuts: dict[str, list[Cut]] = field(default_factory=dict)
-    poles: dict[str, Factored] = field(default_factory=dict)  # of blocks, before anything cancels
-    filters: tuple[str, ...] = ()  # definitions that divide by what depends on s
+    # Of blocks, and of definitions that have any, before anything cancels.
+    poles: dict[str, Factored] = field(default_factory=dict)
 
     def survey(self, *, is_nameless: bool, is_cut: bool, is_followed: bool) -> Distributed | None:
         """Return the model's distributed parts; this assembly is over the ring without kernels."""
@@ -215,7 +215,7 @@ class _Assembly:
             return None
         from symflex.equations.distributed import survey  # only with beams
 
-        evaluator, _ = self._evaluator(self._blocks())
+        evaluator, _ = self._evaluator(self._transfers())
         if self.problems:
             raise ModelError(*self.problems)
         expressions = [e for _, e in self.model.expressions()]
@@ -242,7 +242,9 @@ class _Assembly:
     def _varying(self) -> frozenset[str]:
         return varying_constants(self.model.definitions, self.model.blocks)
 
-    def _evaluator(self, blocks: Mapping[str, Factored]) -> tuple[ExactEvaluator, dict[str, int]]:
+    def _evaluator(self, transfers: Mapping[str, Factored]) -> tuple[ExactEvaluator, dict[str, int]]:
+        """Return what evaluates expressions, definitions as letters, and its point of a prime field."""
+        blocks = {b.name: transfers[b.name] for b in self.model.blocks if b.name in transfers}
         definitions = {d.name: d.expression for d in self.model.definitions}
         prime, point = self._radicals.point() or (PRIME, random_point(self.ring.names))
         point = {name: number for name, number in point.items() if name not in definitions}
@@ -296,11 +298,12 @@ class _Assembly:
 
     def run(self) -> Equations:
         """Return the finished equations."""
-        blocks = self._blocks()
-        evaluator, point = self._evaluator(blocks)
+        transfers = self._transfers()
+        evaluator, point = self._evaluator(transfers)
         definitions = self._define(evaluator, point)
-        self.filters = self._dividing(evaluator)
-        self._check_blocks(blocks, point, evaluator.prime)
+        self._check_blocks(transfers, point, evaluator.prime)
+        # As a letter, a definition would hide the poles that cancel against others.
+        dynamic = replace(evaluator, blocks=transfers)
         nodes = {n.name: n for n in self.model.nodes}
         for node in self.model.nodes:
             for component in node.components:
@@ -312,13 +315,13 @@ class _Assembly:
                 self._take(use, stamp)
         self._take_inputs(nodes, evaluator)
         for variable, expression in values:
-            self._equal(variable, expression, evaluator)
+            self._equal(variable, expression, dynamic)
         for signal in self.model.signals:
-            self._equal(Variable("signal", signal.name), signal.expression, evaluator)
+            self._equal(Variable("signal", signal.name), signal.expression, dynamic)
         for solution in self._solutions():
             self._impose(solution, evaluator)
         self._count_conditions()
-        outputs = [self._output(o.name, o.expression, evaluator) for o in self.model.outputs]
+        outputs = [self._output(o.name, o.expression, dynamic) for o in self.model.outputs]
         if self.problems:
             spend()
             raise error_of(self.problems)
@@ -420,7 +423,8 @@ class _Assembly:
             except KeyError:
                 continue
 
-    def _blocks(self) -> Mapping[str, Factored]:
+    def _transfers(self) -> Mapping[str, Factored]:
+        """Return the transfer functions of blocks, and of definitions that have poles."""
         transfers: dict[str, Factored] = {} if self.distributed is None else dict(self.distributed.delays)
         scope = scope_of(self.model)
         definitions = {d.name: d.expression for d in self.model.definitions}
@@ -434,15 +438,17 @@ class _Assembly:
             root=self.model.root,
             varying=self._varying,
         )
-        s, self.filters = evaluator.s, self._dividing(evaluator)
-        for closed in self._ordered_blocks():
-            block = replace(closed, values=tuple((n, self._with_open_filters(e)) for n, e in closed.values))
-            if block.name in transfers:
+        blocks = {b.name: b for b in self.model.blocks}
+        delayed = self._delayed if self.distributed is None else ()
+        for name, expressions in self._constants_in_order.items():
+            if name in transfers or name in delayed:
+                continue  # over the ring without kernels a delay has no value
+            if name not in blocks:
+                transfers |= self._with_poles(name, expressions[0], evaluator)
                 continue
-            if self.distributed is None and block.name in self._delayed:
-                continue  # over the ring without kernels there is no value for it
+            block = blocks[name]
             try:
-                values = {LAPLACE: s} | {name: evaluator.constant(e) for name, e in block.values}
+                values = {LAPLACE: evaluator.s} | {name: evaluator.constant(e) for name, e in block.values}
                 hidden = Factored.number(self.ring, 1)
                 if block.block is ROOT:
                     transfers[block.name] = Factored.generator(self.ring, LAPLACE)
@@ -461,17 +467,34 @@ class _Assembly:
                 transfers[block.name] = Factored.number(self.ring, 1)
         return transfers
 
+    def _with_poles(self, name: str, written: Expression, evaluator: ExactEvaluator) -> dict[str, Factored]:
+        """Return a definition's value by name if it has poles, and note them."""
+        if name not in self._varying:
+            return {}
+        try:
+            value = evaluator.constant(written)
+            poles = written_denominator(written, evaluator, self.poles)
+        except BudgetError:
+            raise
+        except (SymflexError, ZeroDivisionError):
+            return {}  # `_define` reports it
+        if poles.is_constant:
+            return {}
+        self.poles[name] = poles
+        return {name: value}
+
     @property
     def _delayed(self) -> set[str]:
-        """The delay blocks, and the blocks made of them."""
+        """The delay blocks, and the blocks and definitions made of them."""
         delayed = {b.name for b in self.model.blocks if b.block is not None and b.block.kernel_time}
-        for block in self._ordered_blocks():
-            if any(names_among(e, delayed) for _, e in block.values):
-                delayed.add(block.name)
+        for name, expressions in self._constants_in_order.items():
+            if any(names_among(e, delayed) for e in expressions):
+                delayed.add(name)
         return delayed
 
-    def _ordered_blocks(self) -> list[PlacedBlock]:
-        """Return the blocks so that each uses only earlier ones; SF215 when they go in a circle."""
+    @cached_property
+    def _constants_in_order(self) -> dict[str, list[Expression]]:
+        """Return what blocks and definitions are made of, each after those it uses; SF215 in a circle."""
         by_name = {b.name: b for b in self.model.blocks}
         expressions = {d.name: [d.expression] for d in self.model.definitions}
         expressions |= {b.name: [e for _, e in b.values] for b in self.model.blocks}
@@ -486,7 +509,7 @@ class _Assembly:
             place = next((by_name[n].span for n in circle if n in by_name), None)
             message = f"blocks refer to each other in a circle: {' -> '.join(reversed(circle))}"
             raise ModelError(Diagnostic("SF215", message, place)) from None
-        return [by_name[name] for name in order if name in by_name]
+        return {name: expressions[name] for name in order}
 
     def _stamp(
         self,
@@ -620,7 +643,6 @@ class _Assembly:
             role, given = "equation", ()
             expression = Sum((expression.left, Negative(expression.right)), span=expression.span)
         try:
-            expression = self._with_open_filters(expression)
             form = evaluator.linear(expression)
         except SymflexError as error:
             self.problems.extend(error.diagnostics)
@@ -631,7 +653,6 @@ class _Assembly:
 
     def _output(self, name: str, expression: Expression, evaluator: ExactEvaluator) -> OutputRow | None:
         try:
-            expression = self._with_open_filters(expression)
             form = evaluator.linear(expression)
         except SymflexError as error:
             self.problems.extend(error.diagnostics)
@@ -640,26 +661,6 @@ class _Assembly:
         below = common_denominator(self.ring, form.coefficients)
         divisor = below * self._cancelled(expression, form, evaluator)
         return OutputRow(name, form * divisor, divisor)
-
-    def _dividing(self, evaluator: ExactEvaluator) -> tuple[str, ...]:
-        """Return the definitions that divide by what depends on s."""
-        filters = list[str]()
-        varying = [n for n in (LAPLACE, *self._varying) if n in self.ring.index]
-        for definition in (d for d in self.model.definitions if d.name in self._varying):
-            try:
-                value = evaluator.constant(definition.expression)
-            except (SymflexError, ZeroDivisionError, KeyError):
-                continue  # what is wrong is reported where it stands
-            if any(map(value.denominator().depends_on, varying)) or any(map(value.depends_on, filters)):
-                filters.append(definition.name)
-        return tuple(filters)
-
-    def _with_open_filters(self, expression: Expression) -> Expression:
-        """Return an expression in which no pole of a definition can cancel unseen."""
-        for definition in reversed(self.model.definitions):
-            if definition.name in self.filters:
-                expression = substitute(expression, {definition.name: definition.expression})
-        return expression
 
     def _cancelled(self, expression: Expression, form: LinearForm, evaluator: ExactEvaluator) -> Factored:
         """Return the poles that cancelled within an expression: they stay modes of the model."""

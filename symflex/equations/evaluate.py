@@ -76,7 +76,7 @@ class ExactEvaluator:
 
     ring: Ring  # generators: s, parameters, definitions, pi and elementary functions of constants
     scope: ModelScope  # what names mean
-    blocks: Mapping[str, Factored]  # the blocks' transfer functions
+    blocks: Mapping[str, Factored]  # transfer functions of blocks, and of definitions that are no letters
     through: Mapping[Variable, LinearForm]  # the elements' through quantities
     definitions: Mapping[str, Expression]  # opened inside the arguments of functions
     point: Mapping[str, int] = field(default_factory=dict)  # random, of a prime field
@@ -149,8 +149,9 @@ class ExactEvaluator:
         return found
 
     def is_block(self, expression: Name) -> bool:
-        """Tell whether a name is read as a block."""
-        return self.scope.lookup(expression, constant=False).kind == "block"
+        """Tell whether a name is read as a block, or as a definition with poles."""
+        kind = self.scope.lookup(expression, constant=False).kind
+        return expression.name in self.blocks and kind in ("block", "definition")
 
     def value(self, expression: Expression) -> Factored | LinearForm:
         """Return the value of an expression, of constants or of unknowns."""
@@ -205,7 +206,7 @@ class ExactEvaluator:
     def _name(self, expression: Name | Attribute) -> Factored | LinearForm:
         is_shared = len(self.scope.meanings.get(expression.name, ())) > 1
         meaning = self.scope.lookup(expression, constant=self.is_constant and is_shared)
-        if meaning.kind == "block":
+        if meaning.kind == "block" or (meaning.kind == "definition" and meaning.name in self.blocks):
             return self._block(expression, meaning.name)
         if meaning.kind == "through" and meaning.variable is not None:
             return self.through[meaning.variable]
@@ -371,7 +372,8 @@ def written_poles(
     if isinstance(block.block, TransferFunctionBlock):
         given = dict(block.values)
         return written_denominator(Quotient(given["num"], given["den"]), evaluator, poles)
-    return _in_s(evaluator.blocks[block.name].denominator())
+    within = (written_denominator(e, evaluator, poles) for _, e in block.values)
+    return least_common_multiple(_in_s(evaluator.blocks[block.name].denominator()), within)
 
 
 def written_denominator(
@@ -383,23 +385,32 @@ def written_denominator(
     """
     one = Factored.number(evaluator.ring, 1)
     match expression:
-        case Name(name) if name in evaluator.blocks and evaluator.is_block(expression):
+        case Name(name) if evaluator.is_block(expression):
             return poles.get(name, one)
         case Negative(operand):
             return written_denominator(operand, evaluator, poles)
         case Product(factors):
             return prod((written_denominator(factor, evaluator, poles) for factor in factors), start=one)
         case Quotient(numerator, denominator):
-            below = _in_s(evaluator.constant(denominator).numerator(), evaluator.varying)
+            below = _inverted(denominator, evaluator, poles)
             return written_denominator(numerator, evaluator, poles) * below
         case Power(base, exponent):
             n = int(evaluator.constant(exponent).unit)
             if n >= 0:
                 return written_denominator(base, evaluator, poles) ** n
-            return _in_s(evaluator.constant(base).numerator(), evaluator.varying) ** -n
+            return _inverted(base, evaluator, poles) ** -n
         case Sum(terms):
             return least_common_multiple(one, (written_denominator(t, evaluator, poles) for t in terms))
     return one
+
+
+def _inverted(expression: Expression, evaluator: ExactEvaluator, poles: Mapping[str, Factored]) -> Factored:
+    """Return the denominator in s of an expression's inverse: its zeros, and the poles that cancel in it."""
+    value = evaluator.constant(expression)
+    left = value.denominator()
+    written = written_denominator(expression, evaluator, poles)
+    cancelled = least_common_multiple(left, (written,)) / left
+    return _in_s(value.numerator(), evaluator.varying) * cancelled
 
 
 def _in_s(value: Factored, varying: Collection[str] = ()) -> Factored:

@@ -60,6 +60,22 @@ def test_poles_of_definitions_cancel_no_less_than_those_of_blocks():
     assert (tf.order, found) == ((0, 1), [])
 
 
+def test_a_pole_cancelled_within_a_definition_is_hidden():
+    block = '\n[blocks]\nQ = { type = "tf", num = 1, den = "s - 1" }'
+    for definitions, blocks, order in [
+        ('C = "(s - 1)/(s - 1)"', "", (0, 0)),
+        ('C = "(s - 1)*(1/(s - 1))"', "", (0, 0)),
+        ('C = "(s - 1)*Q"', block, (0, 0)),
+        ('D = "Q"\nC = "D*(s - 1)"', block, (0, 0)),
+        ('L = "(s - 1)/(s + 1)*Q"\nC = "1/(1 + L)"', block, (1, 1)),
+        ('D = "(s - 1)*Q"\nC = "R"', block + '\nR = { type = "integrator", k = "D" }', (0, 1)),
+        ('D = "(s - 1)*Q"\nC = "R"', block + '\nR = { type = "tf", num = "D", den = "s + 3" }', (0, 1)),
+    ]:
+        for signals, expression in [('y = "C*r"', "y"), ('y = "r"', "C*y")]:
+            tf, found = hidden(signals=signals, expression=expression, blocks=blocks, definitions=definitions)
+            assert (tf.order, found) == (order, [("s - 1", 1)]), (definitions, blocks)
+
+
 def test_a_pole_cancelled_between_two_blocks_of_one_product_is_hidden():
     tf, found = hidden(signals='y = "A*B*r"')
     assert tf.order == (1, 1)
