@@ -372,8 +372,11 @@ def written_poles(
     if isinstance(block.block, TransferFunctionBlock):
         given = dict(block.values)
         return written_denominator(Quotient(given["num"], given["den"]), evaluator, poles)
+    below = evaluator.blocks[block.name].denominator()
+    if isinstance(block.formula, Quotient):
+        below = factored_of(block.formula.denominator, evaluator.ring, values.__getitem__).numerator()
     within = (written_denominator(e, evaluator, poles) for _, e in block.values)
-    return least_common_multiple(_in_s(evaluator.blocks[block.name].denominator()), within)
+    return least_common_multiple(_in_s(below), within)
 
 
 def written_denominator(

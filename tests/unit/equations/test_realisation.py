@@ -93,6 +93,13 @@ def test_a_pole_cancelled_within_a_block_is_hidden():
     ):
         tf, found = hidden(signals='y = "Q*r"', blocks=f"Q = {block}")
         assert (tf.order, found) == ((0, 1), [("s - 1", 1)]), block
+    for block, poles in (
+        ('{ type = "lead_lag", T_1 = -1, T_2 = -1 }', "s - 1"),
+        ('{ type = "notch", omega = 1, zeta_p = -1, zeta_z = -1 }', "s^2 - 2*s + 1"),
+        ('{ type = "resonance", omega_p = 2, omega_z = 2, zeta_p = -1, zeta_z = -1 }', "s^2 - 4*s + 4"),
+    ):
+        tf, found = hidden(signals='y = "Q*r"', blocks=f"Q = {block}")
+        assert (tf.order, found) == ((0, 0), [(poles, 1)]), block
 
 
 def test_a_pole_cancelled_in_an_output_is_hidden_there():
