@@ -420,7 +420,7 @@ class StabilityOptions:
         "--over",
         multiple=True,
         metavar="P",
-        help="Any parameter in place of a gain, a delay or a length; twice: a chart. For "
+        help="In place of --gain: any parameter, such as a delay or a length; twice: a chart. For "
         "a chart --range takes the name first: --range T 0 '5 ms'.",
     )
     ranges: Sequence[tuple[str, Stated, Stated]] = option(
@@ -431,7 +431,7 @@ class StabilityOptions:
     )
     peaks: bool = option(False, "--peaks", help="With beams or delays too: peaks of S and T, disk margin.")
     letters: bool = option(
-        False, "--letters", help="Conditions in letters; with two of --over, their boundary as a curve."
+        False, "--letters", help="Conditions in letters; with --over twice, their boundary as a curve."
     )
     of: str = option(
         "poles", "--of", choices=("poles", "zeros"), **SHOWN, help="Whose conditions --letters prints."
@@ -491,7 +491,7 @@ class PlotOptions:
         (), "--range-of", nargs=3, multiple=True, hidden=True, metavar="P LO HI"
     )
     resolve: Stated = option("1 %", "--resolve", metavar="SHARE", **SHOWN, help="As for symflex stability.")
-    box: bool = option(False, "--box", help="Draw the largest box about the values that is stable.")
+    box: bool = option(False, "--box", help="Draw the largest box about the values with the same count.")
     modes: int | None = option(None, "--modes", least=1, help="Show the N lowest modes.")
     output: str | None = file_option("File to write: .pdf, .pgf, .svg or .png; .gif of modes.")
     width: float | str | None = option(None, "--width", **WIDTH)
@@ -539,7 +539,7 @@ class AuditOptions:
 SEGMENTS: Final = {
     "least": 1,
     "metavar": "N",
-    "help": "Records in time: average so many segments by Welch's method.  [default: as the input asks]",
+    "help": "Records in time: average this many segments by Welch's method.  [default: depends on the input]",
 }
 ESTIMATOR: Final = {
     "choices": ("h1", "h2"),
@@ -603,9 +603,9 @@ class FitOptions:
         "s21; of records in time t,u,y.",
     )
     first_hz: float = option(
-        0.0, "--from", type=float, least=0, help="First frequency of data without any [Hz], with --step."
+        0.0, "--from", type=float, least=0, help="First frequency of data that list none [Hz]; needs --step."
     )
-    step_hz: float | None = option(None, "--step", type=float, least=0, help="Their distance [Hz].")
+    step_hz: float | None = option(None, "--step", type=float, least=0, help="Spacing of the lines [Hz].")
     averages: float | None = option(
         None,
         "--averages",

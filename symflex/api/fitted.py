@@ -192,7 +192,7 @@ def fit(
     estimator : str
         Records in time: ``h1`` for noise at the output, ``h2`` for noise at the input.
     segments : int, optional
-        Records in time: average so many segments by Welch's method; by default as the input asks.
+        Records in time: average this many segments by Welch's method; by default it depends on the input.
 
     Raises
     ------

@@ -147,7 +147,7 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
     prints a combination for which it is proved not to be. Put it after SPEC, with or without a share.
 
     --letters prints inequalities in the parameters that hold exactly where all poles, or with --of zeros all
-    zeros of a transfer function, lie in the left half-plane; with two of --over, the boundary as a curve.
+    zeros of a transfer function, lie in the left half-plane; with --over twice, the boundary as a curve.
 
     Exit code 4: something is not certified, as the output lists. Undamped structures have poles all
     along the axis; these are counted up to a frequency, which is printed.

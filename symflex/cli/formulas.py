@@ -39,7 +39,7 @@ def check(spec: Specification, given: CheckOptions) -> int:
 
     Warnings point to possible typing errors: a node that only one element touches, a name that nothing uses,
     an input that reaches nothing, an element without effect. They also say whether a frequency was read in
-    cycles or in radians where both are possible. All other commands end with how many there are.
+    cycles or in radians where both are possible. All other commands end with the number of warnings.
     """
     from symflex import pipeline
 
@@ -121,8 +121,8 @@ def chosen_representation(representation: str, form: str | None) -> str:
 def derive(spec: Specification, given: DeriveOptions) -> int:
     """Print the transfer functions of SPEC in closed form.
 
-    Without --tf, all are printed. A long denominator that several share is printed once, as D, and so are
-    definitions that mean the same in several. Strings in JSON follow the expression grammar of
+    Without --tf, all are printed. A long denominator that several functions share is printed once, as D, and
+    so are definitions that mean the same in all of them. Strings in JSON follow the expression grammar of
     specifications, with every denominator in full.
 
     --short and --order print formulas that are not exact, and below them what is proved: how much

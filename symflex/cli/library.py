@@ -347,7 +347,7 @@ def schema(*, output: str | None) -> int:
     """Write the JSON Schema of specifications, for editors that complete and check TOML.
 
     Begin a specification with '#:schema symflex.schema.json', or tell your editor once for all files named
-    *.symflex.toml. What a schema cannot know, such as units and names, 'symflex check' reports.
+    *.symflex.toml. 'symflex check' reports what a schema cannot know, such as units and names.
     """
     import json
 

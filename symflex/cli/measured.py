@@ -140,8 +140,8 @@ def _read(given: FitOptions) -> list[MeasuredResponse]:
 def measure(spec: Specification, given: MeasureOptions) -> int:
     """Write the frequency response of a record in time, or a synthetic measurement of a model.
 
-    A record in time has a column of time and one for each channel, as for 'symflex fit'. Its response is
-    estimated as its input asks: from a step, an impact, whole periods, or by Welch's method. --tf OUT/IN
+    A record in time has a column of time and one for each channel, as for 'symflex fit'. How its response is
+    estimated depends on the input: from a step, an impact, whole periods, or by Welch's method. --tf OUT/IN
     chooses one of several.
 
     If SPEC is a specification, band-limited noise drives the model, and a sensor adds noise to the response.

@@ -75,7 +75,7 @@ def plot(spec: Specification, given: PlotOptions) -> int:
 
     Without -o, the figure is written to the current folder as SPEC_KIND.pdf.
 
-    modes -o FILE.gif shows one period of every shape, again and again.
+    modes -o FILE.gif writes an animation that repeats one period of every shape.
 
     Use .pgf for papers set with LaTeX: load the package pgf and input the file. Its text appears in the
     paper's font, and --font (latex by default) only sets how much space it gets. You need no LaTeX to write

@@ -35,11 +35,12 @@ def respond(spec: Specification, given: RespondOptions) -> int:
 
     --to FILE.csv joins its samples by straight lines, or with --hold by steps; the input is 0 before the
     first sample and constant after the last. This is exact, too. Two samples at one time are a jump.
-    --initial begins with values of states, at the first sample of a file; --to free adds no input. --shaped
-    passes the input through the shaper that 'symflex shape' prints for the same transfer function.
+    --initial gives values of states at the start, or at the first sample of a file; --to free adds no input.
+    --shaped passes the input through the shaper that 'symflex shape' prints for the same transfer function.
 
     --record FILE drives the model with the input of a record in time, as 'symflex fit' reads them. The rms of
-    the measured output less that of the model is printed, and -o draws both. Values are in the model's units.
+    the difference between measured output and model is printed, and -o draws both. Values are in the units
+    of the model.
 
     An impulse in the response is printed separately, not among the values. The value at t = 0 is the limit
     from the right (t -> 0+).
@@ -201,7 +202,8 @@ def peak(spec: Specification, given: PeakOptions) -> int:
     """Print the largest magnitude of one transfer function of SPEC over all frequencies, and where it is.
 
     It is certified that no frequency has a larger one; a pole on the imaginary axis makes it infinite.
-    Stable lumped functions have their H2 norm, too. Exit code 4: from some frequency on no bound is known.
+    For stable lumped functions the H2 norm is printed, too. Exit code 4: no bound is known beyond some
+    frequency.
     """
     from symflex import pipeline
     from symflex.loops.peak import find_peak

@@ -159,7 +159,7 @@ def _compiled(source: str) -> bytes | None:
 
 FMU = SampledLanguage(
     ".fmu",
-    "co-simulation unit of FMI 3.0, with sources, and for Linux compiled",
+    "co-simulation unit of FMI 3.0, with sources and, on Linux, a binary",
     fmu,
     COMMENT,
     sorted({*KEYWORDS, *RESERVED}),

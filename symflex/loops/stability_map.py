@@ -384,7 +384,7 @@ def _beyond(stability: StabilityMap) -> Iterator[str]:
         yield f"{2 * INDENT}{_poles(count)} of the model in the right half-plane for {shown}: {places}"
     if stability.gain_at_end is not None:
         yield f"{2 * INDENT}the loop gain there is taken to stay below one: for {stability.gain} up to"
-        yield f"{2 * INDENT}{stability.gain_at_end:.{SHORT_DIGITS}g} it is so where the data end"
+        yield f"{2 * INDENT}{stability.gain_at_end:.{SHORT_DIGITS}g} it does so where the data end"
 
 
 def _poles(count: int) -> str:
