@@ -72,7 +72,7 @@ class Budget:
     Traceback (most recent call last):
     ...
     symflex.errors.exceptions.BudgetError: error[SF504]: the memory budget is used up: 0.000001 GB
-      hint: allow more memory, or ask for less
+      hint: allow more memory (--memory), or ask for less
     """
 
     seconds: float | None = None
@@ -179,7 +179,7 @@ def memory_used_up(memory: int) -> Diagnostic:
     """Return what is said when a process holds more than it may."""
     amount = f"{memory / GB:.6f}".rstrip("0").rstrip(".")
     message = f"the memory budget is used up: {amount} GB"
-    return Diagnostic("SF504", message, None, "allow more memory, or ask for less")
+    return Diagnostic("SF504", message, None, "allow more memory (--memory), or ask for less")
 
 
 def peak_memory() -> int:

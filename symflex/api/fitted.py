@@ -172,13 +172,13 @@ def fit(
     band : (float, float), optional
         Only lines between these frequencies [Hz].
     columns : str
-        What the columns of the files are, where these do not say: see :func:`read_measurement`.
+        What the columns of the files are, if these do not state it: see :func:`read_measurement`.
     axis : (float, float), optional
         First frequency and step [Hz] of files without frequencies.
     averages : float, optional
-        Independent averages, where the data do not say.
+        Independent averages, if the data do not state them.
     window : str, optional
-        ``hann``, ``none`` or ``exponential:0.5`` (time constant [s]), where the data do not say.
+        ``hann``, ``none`` or ``exponential:0.5`` (time constant [s]), if the data do not state it.
     gain : bool
         Fit a gain in addition to the base.
     lag : bool or "signed"
@@ -199,8 +199,8 @@ def fit(
     DataError
         SF601 to SF607: data that cannot be used.
     FitError
-        SF615: the base vanishes in the band. Otherwise the best fit is returned, and ``poor`` says why it is
-        not a good one.
+        SF615: the base vanishes in the band. Otherwise the best fit is returned, and ``poor`` gives the
+        reason if it is not a good one.
     UsageError
         SF902 names and options that contradict each other.
 

@@ -651,7 +651,7 @@ class Model:
         ax: AxesGiven | None = None,
         **values: Number,
     ) -> Figure:
-        """Return the Nichols chart of the loop gain, as :meth:`nyquist` its values; axes in degrees and dB.
+        """Return the Nichols chart of the loop gain, axes in degrees and dB; see :meth:`nyquist`.
 
         Examples
         --------
@@ -761,7 +761,7 @@ class Model:
         spacing : float
             Distance of lines [Hz], one over the length of a record.
         averages : int
-            Records averaged, with half an overlap and a Hann window.
+            Records averaged; they overlap by half and have a Hann window.
         noise : float
             Ratio of sensor noise to signal, rms.
         rolloff : float, optional
@@ -1037,7 +1037,7 @@ def loads(
     *,
     allow_outside: Iterable[str | Path] = (),
 ) -> Model:
-    """Read a specification from a text; ``name`` is its name in messages, ``values`` are as in :func:`load`.
+    """Read a specification from a string; ``name`` is its name in messages, ``values`` as in :func:`load`.
 
     ``model`` blocks read files in the folder of ``name``, in those of ``allow_outside``, and in their
     subfolders.

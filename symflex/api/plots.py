@@ -200,7 +200,7 @@ class Plotted:
         font: str | None = None,
         ax: AxesGiven | None = None,
     ) -> Figure:
-        """Return magnitudes [dB] over phases [deg], with contours of the closed loop, as :meth:`nyquist`."""
+        """Return magnitudes [dB] over phases [deg] with contours of the closed loop; see :meth:`nyquist`."""
         given = PlotOptions("nichols", band=band, xlim=xlim, ylim=ylim, width=width, font=font)
         return plot_functions(given, [self.bound, *(other.bound for other in others)], ax)
 

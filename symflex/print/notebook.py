@@ -15,7 +15,7 @@ class Printed:
         raise NotImplementedError
 
     def text(self, width: int | None = WIDTH) -> str:
-        """Return it for a terminal of so many columns; without one, no line is broken."""
+        """Return the text for a terminal of this many columns; without a number, no line is broken."""
         return passages_text(self.passages(), width)
 
     def __str__(self) -> str:
