@@ -647,9 +647,11 @@ class _Assembly:
         except SymflexError as error:
             self.problems.extend(error.diagnostics)
             return
-        row = LinearForm.of(*given) + form
+        row, cancelled = LinearForm.of(*given) + form, self._cancelled(expression, form, evaluator)
+        if not cancelled.is_one:  # only of a polynomial row is it a factor: it may divide what is left, too
+            row = row * common_denominator(self.ring, form.coefficients) * cancelled
         self.unknowns.append(variable)
-        self.rows.append(EquationRow(variable, row * self._cancelled(expression, form, evaluator), role))
+        self.rows.append(EquationRow(variable, row, role))
 
     def _output(self, name: str, expression: Expression, evaluator: ExactEvaluator) -> OutputRow | None:
         try:

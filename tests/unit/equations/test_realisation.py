@@ -60,6 +60,19 @@ def test_poles_of_definitions_cancel_no_less_than_those_of_blocks():
     assert (tf.order, found) == ((0, 1), [])
 
 
+def test_of_a_double_pole_that_cancels_once_one_is_hidden_and_one_is_moved():
+    # y = 5/((s - 1)*(s + 9))*(r - y): s^2 + 8*s - 4; the states have s = 1 beside.
+    for signals, definitions in [
+        ('y = "C*P*(r - y)"', 'C = "(s - 1)/(s + 9)"\nP = "5/(s - 1)^2"'),
+        ('u = "C*(r - y)"\ny = "P*u"', 'C = "(s - 1)/(s + 9)"\nP = "5/(s - 1)^2"'),
+        ('y = "5*(s - 1)/(s - 1)/(s - 1)/(s + 9)*(r - y)"', None),
+        ('y = "D/(s + 9)*(r - y)"', 'D = "5*(s - 1)/(s - 1)^2"'),
+    ]:
+        tf, found = hidden(signals=signals, definitions=definitions)
+        assert tf.order == (0, 2), signals
+        assert ("s - 1", 1) in found, signals
+
+
 def test_a_pole_cancelled_within_a_definition_is_hidden():
     block = '\n[blocks]\nQ = { type = "tf", num = 1, den = "s - 1" }'
     for definitions, blocks, order in [
