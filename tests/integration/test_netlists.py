@@ -65,7 +65,7 @@ REFUSED = {
     "V1 in 0 AC 1\nE1 out 0 POLY(1) in 0 0 1": "SF105",
     "V1 in 0 AC 1\nE1 out 0 in 0 laplace=1/(1+s)": "SF105",
     "V1 in 0 AC 1\nR1 in out": "SF105",
-    "V1 in 0 AC 1\nR1 in out ten": "SF210",
+    "V1 in 0 AC 1\nR1 in out ten": "SF105",
     "V1 in 0 AC 1\nR1 in out 1k\nR1 out 0 1k": "SF105",
     "V1 in 0 AC 1\nX1 in out filter": "SF105",
     "V1 in 0 AC 1\nX1 in a b c filter\n.subckt filter a b\nR1 a b 1\n.ends": "SF105",
@@ -91,6 +91,11 @@ REFUSED = {
     "V1 in 0 AC 1\nX1 in 0 f m=2\n.subckt f a b\nR1 a b 1\n.ends": "SF105",
     "V1 in 0 AC 1\nX1 in out adj LT1083": "SF105",  # a regulator
     "V1 in 0 AC 1\nX1 in 0 p m out opamp": "SF105",  # LTspice's has three pins
+    "V1 in 0 AC 1\nX1 in out p m out level.3a Avol=1Meg GBW=10Meg": "SF105",  # with a second pole
+    "V1 in 0 AC 1\nX1 in out opamp Cin=1p": "SF105",
+    "V1 in 0 AC 1\n.func f(x) {2*x}\nR1 in 0 1k": "SF105",
+    "V1 in 0 AC 1\nR1 in out 4,7k\nR2 out 0 1k": "SF105",
+    "V1 in 0 AC 1\n.print ac v(ot)\nR1 in out 1k\nR2 out 0 1k": "SF105",
 }
 
 
@@ -122,6 +127,9 @@ def test_netlists_are_read_in_the_encodings_of_ltspice(encoding, tmp_path):
         "C1 out 0 C value={C} vinit=0\n.param R=1k C=1u",  # SLiCAP
         "V1 in 0 AC 1\nR1 in out 1k\nC1 out 0 1u\n.ac lin 1 1k 1k\n.end\nR2 out 0 1k",
         "V1 in 0 AC 1\nXU1 out o out opamp Aol=1e9\nR1 in o 1k\nC1 o 0 1u\n.print ac v(out)",
+        "V1 in 0 AC 1\nXU1 in n p m out level.2 Avol=2 Rin=1k Rout=1k Slew=1\nR1 n 0 1k\nC1 out 0 1u",
+        "V1 Net-(R1-Pad1) 0 AC 1\nR1 Net-(R1-Pad1) out {log10((10))*1k}\nC1 out 0 1u",  # KiCad
+        "V1 in 0 AC 1\nR1 in x 0\nR2 x out 1k\nC1 out 0 1u",
     ],
 )
 def test_other_programs_write_a_low_pass_in_their_ways(body, tmp_path):

@@ -41,13 +41,18 @@ IN_EXPRESSION: Final = re.compile(
 )
 EXPRESSION: Final = re.compile(r"[\w\s.+\-*/^()µ]*")
 POWER: Final = re.compile(r"\bpow\(\s*([\w.]+)\s*,\s*(\w+)\s*\)", re.I)
-TOKEN: Final = re.compile(r"\{[^}]*\}|'[^']*'|\"[^\"]*\"|\w+\s*\([^()]*\)|[^\s,=()]+|=")
+BRACKETS: Final = r"\((?:[^()]|\([^()]*\))*\)"
+LOG10: Final = re.compile(rf"\blog10\s*({BRACKETS})", re.I)
+TOKEN: Final = re.compile(
+    rf"{{[^}}]*}}|'[^']*'|\"[^\"]*\"|[\w/]+-?\s*{BRACKETS}|[^\s,=()]+|="
+)  # Net-(R1-Pad1)
 UNITS: Final = {"R": "Ohm", "L": "H", "C": "F"}
 TYPES: Final = {"R": ("resistor", "R"), "L": ("inductor", "L"), "C": ("capacitor", "C")}
 IGNORED: Final = frozenset(
     "end ends op tran dc options option temp backanno lib model ic nodeset save control endc noise meas "
-    "measure width four sens pz disto step csparam func title fft wave".split()
+    "measure width four sens pz disto step csparam title fft wave".split()
 )
+FIRST, LAST = (".param", ".params", ".global"), (".print", ".plot", ".probe", ".tf", ".detector")
 HARMLESS: Final = frozenset(
     "ic tc tc1 tc2 noisy noiseless noisetemp noiseflow dcvar dcvarlot vinit iinit".split()
 )
@@ -57,19 +62,14 @@ TAKEN: Final = frozenset(("s", "pi", "j", "ground"))
 REPLACED: Final = {
     "D": ("a diode", "a resistor of U_T/I_D, 26 mV over its current"),
     "Q": ("a bipolar transistor", "G out 0 in 0 {I_C/26m} with a resistor beta*26m/I_C from base to emitter"),
-    "M": ("a MOSFET", "G drain source gate source {g_m} with a resistor r_o"),
-    "J": ("a JFET", "G drain source gate source {g_m} with a resistor r_o"),
-    "Z": ("a MESFET", "G drain source gate source {g_m} with a resistor r_o"),
-    "S": ("a switch", "a resistor of the state it is in, or nothing"),
-    "W": ("a switch", "a resistor of the state it is in, or nothing"),
-    "T": ("a transmission line", "a specification with the line as [fields], x along it"),
-    "O": ("a lossy line", "a specification with the line as [fields], x along it"),
-    "U": ("a uniform line", "a specification with the line as [fields], x along it"),
+    **dict.fromkeys("MJZ", ("a FET", "G drain source gate source {g_m} with a resistor r_o")),
+    **dict.fromkeys("SW", ("a switch", "a resistor of the state it is in, or nothing")),
+    **dict.fromkeys("TOU", ("a transmission line", "a specification with the line as [fields], x along it")),
     "B": ("a source of an arbitrary function", "E, F, G or H with its slope at the operating point"),
     "A": ("a digital or special function", "E with its gain"),
 }
-OP_AMPS: Final = {4: re.compile(r"universalopamp\w*|level\.?\d\w*"), 2: re.compile("opamp")}
-"""The op-amps of LTspice, by the place of their output among their nodes."""
+OP_AMPS: Final = {4: re.compile(r"universalopamp\w*|level\.?[12]\w*"), 2: re.compile("opamp")}
+"""The op-amps of LTspice, by the place of their output among their nodes; level 3 has a second pole."""
 MOST_DEPTH: Final = 20
 MOST_LINES: Final = 20_000
 
@@ -96,9 +96,7 @@ class Circuit:
     elements: list[tuple[str, str, str]] = field(default_factory=list)  # name, table, comment
     inputs: dict[str, str] = field(default_factory=dict)
     outputs: dict[str, str] = field(default_factory=dict)
-    sources: list[tuple[str, str, tuple[str, str], str]] = field(
-        default_factory=list
-    )  # name, kind, nodes, "ac"
+    sources: list[tuple[str, str, tuple[str, str], str]] = field(default_factory=list)  # nodes, "ac"
     nodes: dict[str, str] = field(default_factory=dict)
     band: str = ""
     comments: list[str] = field(default_factory=list)
@@ -115,7 +113,7 @@ def specification_of(source: Source, read: Callable[[str], Source]) -> str:
     reader.given = {w.lower(): w + "_" * (w in TAKEN) for w, after in assigned if after == "="}
     named = {re.sub(r"\W", "_", w) for line in body if (w := line.words[0])[0].upper() in "RLCEFGH"}
     reader.names = named | set(reader.given.values())
-    for line in sorted(body, key=lambda x: not x.words[0].lower().startswith((".param", ".global"))):
+    for line in sorted(body, key=lambda x: (x.words[0].lower() in LAST) - (x.words[0].lower() in FIRST)):
         reader.statement(line, scope, 0)
     reader.couple()
     return _written(title, reader.finished(lines))
@@ -293,9 +291,8 @@ class _Netlist:
         if match is None:
             if re.fullmatch(r"[A-Za-z_]\w*", text):
                 return self._expression(line, text, scope)
-            raise line.refuse(
-                f"'{text[:60]}' is not a value", "a number with a suffix as 4.7k or 10meg, or {an expression}"
-            )
+            hint = "write a number with a suffix, 4.7k or 10meg, or an expression in braces, {2*R}"
+            raise line.refuse(f"'{text[:60]}' is not a value", hint)
         return _quantity(match[1], (match[2] or "").lower(), unit)
 
     def _expression(self, line: Card, text: str, scope: _Scope) -> str:
@@ -304,12 +301,15 @@ class _Netlist:
             hint = "expressions have numbers, parameters, + - * / ^ and functions of one argument"
             raise line.refuse(f"'{text[:60]}' is not an expression that can be read", hint)
         text = IN_EXPRESSION.sub(lambda m: m[1] + SUFFIXES.get((m[2] or "").lower(), ""), text)
-        text = re.sub(r"\bln\s*\(", "log(", text, flags=re.I)
+        text = re.sub(r"\bln\s*\(", "log(", LOG10.sub(r"(log\1/log(10))", text), flags=re.I)
 
         def named(match: re.Match[str]) -> str:
-            return scope.parameters.get(match[0].lower(), self._known(match[0]))
+            if (name := match[0]).lower() not in {*scope.parameters, *self.given, "pi"}:
+                hint = nearest(name, self.given) or f"define it: .param {name[:40]}=1k"
+                raise line.refuse(f"unknown parameter '{name[:40]}'", hint)
+            return scope.parameters.get(name.lower(), self._known(name))
 
-        return re.sub(r"[A-Za-z_]\w*(?!\s*\()(?![\w.])", named, text)
+        return re.sub(r"(?<![\w.])[A-Za-z_]\w*(?!\s*\()(?![\w.])", named, text)
 
     def _known(self, name: str) -> str:
         """Return a parameter's name as it was first written."""
@@ -331,14 +331,16 @@ class _Netlist:
         while rest and (rest[0] == "=" or rest[0].upper() in (letter, "VALUE")):
             rest = rest[1:]
         if not rest:
-            raise line.refuse(f"'{line.words[0][:40]}' has no {'value' if letter in 'RLCK' else 'gain'}")
+            what = "value" if letter in "RLCK" else "gain"
+            raise line.refuse(f"'{line.words[0][:40]}' has no {what}", f"write the nodes, then the {what}")
         has_tc = "tc" in (low := [w.lower() for w in rest])
         for before, word in pairwise(low):
             is_read = "=" in (before, word) or (has_tc and NUMBER.fullmatch(word))
-            if not is_read or (word == "=" and before not in HARMLESS):
-                extra = before if word == "=" else word
-                if extra not in HARMLESS:
-                    raise line.refuse(f"'{extra[:40]}' of '{line.words[0][:40]}' is not read", APART)
+            extra = before if word == "=" else word
+            if (not is_read or word == "=") and extra not in HARMLESS:
+                hint = "write the nodes, then one value, with a decimal point"
+                hint = APART if extra[0].isalpha() else hint
+                raise line.refuse(f"'{extra[:40]}' of '{line.words[0][:40]}' is not read", hint)
         return rest[0]
 
     def _add(self, name: str, table: str, line: Card) -> None:
@@ -376,11 +378,9 @@ class _Netlist:
         odd = re.match(r"(poly|table|value|laplace|freq)\b.*", low[0]) if low else None
         named = [w for w, after in pairwise(low) if after == "=" and w in ("laplace", "vol", "cur", "v", "i")]
         if odd or named:
-            hint = "write a constant gain, or its slope at the operating point"
-            raise line.refuse(
-                f"'{words[0][:40]}' has a function that is not read: {named[0] if named else low[0][:40]}",
-                hint,
-            )
+            what = named[0] if named else low[0][:40]
+            hint = "write a constant gain; a block may replace it in the file of 'symflex new --from'"
+            raise line.refuse(f"'{words[0][:40]}' has a function that is not read: {what}", hint)
         inputs: tuple[str, ...] = ()
         current, at = "", 5
         if letter in "EG":
@@ -490,14 +490,22 @@ class _Netlist:
         self, line: Card, words: Sequence[str], name: str, scope: _Scope, given: Mapping[str, str]
     ) -> None:
         """Take an op-amp of LTspice's library: with supplies in+, in-, V+, V-, out; without in-, in+, out."""
-        at = [self._node(w, scope) for w in words[1:-1]]
-        inputs, out = ((at[0], at[1]), at[4]) if len(at) == 5 else ((at[1], at[0]), at[2])  # noqa: PLR2004
-        gain = next((v for k, v in given.items() if k in ("avol", "aol")), "")
-        band = given.get("gbw", "")
+        known = "avol aol gbw rin rout slew ilimit rail vos phimargin en enk in ink"  # from slew on nonlinear
+        if odd := given.keys() - known.split():
+            raise line.refuse(f"'{min(odd)[:40]}' of '{words[0][:40]}' is not read", APART)
+        plus, minus, last = (1, 2, 5) if len(words) == 7 else (2, 1, 3)  # noqa: PLR2004
+        inputs = (self._node(words[plus], scope), self._node(words[minus], scope))
+        out = self._node(words[last], scope)
+        inner = self._node(f"{words[0]} out", scope) if "rout" in given else out
+        for key, ends in (("rin", inputs), ("rout", (inner, out))):
+            if key in given:
+                part = f"{name}_{key}"
+                value = self._valued(line, part, given[key], scope, "Ohm")
+                self._add(part, f'type = "resistor", between = {_texts(ends)}, R = "{value}"', line)
+        text, band = given.get("avol", given.get("aol", "")), given.get("gbw", "")
+        gain = self._value(line, text, scope) if text else ""
         more = f', f_u = "{self._value(line, band, scope, "Hz")}"' if band else ""
-        self._op_amp(
-            line, name, inputs, (out, "ground"), self._value(line, gain, scope) if gain else "", more
-        )
+        self._op_amp(line, name, inputs, (inner, "ground"), gain, more)
 
     def _directive(self, line: Card, scope: _Scope) -> None:
         word = line.words[0][1:].lower()
@@ -507,6 +515,8 @@ class _Netlist:
                 name = self.given.get(key, key)
                 is_number = re.fullmatch(r"[-+.\de]+", value, re.I) is not None
                 (self.circuit.parameters if is_number else self.circuit.definitions)[name] = value
+        elif word == "func":
+            raise line.refuse("functions of .func are not read", "write the expression where it is used")
         elif word == "global":
             self.shared |= {w.lower() for w in line.words[1:]}
         elif word == "source":  # SLiCAP
@@ -515,7 +525,7 @@ class _Netlist:
             ends = [self._value(line, w, scope, "Hz") for w in line.words[3:5] if NUMBER.fullmatch(w)]
             if len(set(ends)) == 2:  # noqa: PLR2004
                 self.circuit.band = f"band = {_texts(ends)}"
-        elif word in ("print", "plot", "probe", "tf", "detector"):
+        elif f".{word}" in LAST:
             asked = line.words[1:] if word != "tf" else line.words[1:2]
             for w in asked:
                 self._output(line, w, scope)
@@ -527,11 +537,13 @@ class _Netlist:
 
     def _output(self, line: Card, word: str, scope: _Scope) -> None:
         word = re.sub(r"^([VI])_(\w+)$", r"\1(\2)", word)  # as SLiCAP names them
-        match = re.fullmatch(r"(v|vm|vdb|vp|i|im)\s*\(([^()]*)\)", word, re.I)
+        match = re.fullmatch(r"(v|vm|vdb|vp|i|im)\s*\((.*)\)", word, re.I)
         if match is None:
             return
         names = [w for w in re.split(r"[\s,]+", match[2].strip()) if w]
         if match[1][0].lower() == "v" and len(names) in (1, 2):
+            if lost := next((w for w in names if w.lower() not in {*self.circuit.nodes, "0", "gnd"}), ""):
+                raise line.refuse(f"no component touches '{lost[:40]}'", nearest(lost, self.circuit.nodes))
             nodes = [self._node(w, scope) for w in names]
             shown = [n for n in nodes if n != "ground"]
             sign = "-" if nodes[0] == "ground" else ""
@@ -549,8 +561,8 @@ class _Netlist:
         acting = acting or [x for x in circuit.sources if x[3] == "moves"] or circuit.sources
         if not acting:
             where = lines[0] if lines else None
-            message = "a netlist needs a source, V or I, for its input"
-            raise SpecError(Diagnostic("SF105", message, where.span if where else None, "V1 in 0 AC 1"))
+            message = "a netlist needs a source, V or I, for its input, such as V1 in 0 AC 1"
+            raise SpecError(Diagnostic("SF105", message, where.span if where else None))
         known = {x[0].lower() for x in circuit.sources}
         for key, word in self.sensed.items():
             if key and key not in known:
@@ -571,7 +583,7 @@ class _Netlist:
             if text.endswith(".i") and kinds.get(name) == "V":
                 circuit.outputs[key] = f"-{text}"  # SPICE counts it into the first node
         if not circuit.outputs:
-            driven = {x[2][0] for x in acting if x[1] == "V"}
+            driven = {x[2][0] for x in circuit.sources if x[1] == "V"}
             circuit.outputs = {f"V_{n}": n for n in circuit.nodes.values() if n not in driven}
         return circuit
 
@@ -623,8 +635,9 @@ def _written(title: str, circuit: Circuit) -> str:
             lines.extend(["", f"[{name}]", *(f"{key.ljust(width)} = {text}" for key, text in rows)])
 
     quoted = ((n, f'"{v}"' if " " in v else v) for n, v in circuit.parameters.items())
+    real = ', assume = "real" }'  # what is negative, or zero
     section(
-        "parameters", ((n, f'{{ value = {v}, assume = "real" }}' if "-" in v[:2] else v) for n, v in quoted)
+        "parameters", ((n, f"{{ value = {v}{real}" if re.match('"?-|[^1-9]*$', v) else v) for n, v in quoted)
     )
     section("definitions", ((n, f'"{v}"') for n, v in circuit.definitions.items()))
     section(
