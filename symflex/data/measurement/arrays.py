@@ -22,22 +22,10 @@ from symflex.data.measurement.array_files import (
     read_variables,
     require,
 )
-from symflex.data.measurement.columns import (
-    CROSS,
-    WITHOUT_AXIS,
-    WITHOUT_TIME,
-    Assembled,
-    ColumnMeaning,
-    DataColumn,
-    ask,
-    assembled,
-    columns_asked,
-    meaning_of,
-    names_of,
-    option_in_time,
-    unit_by_round_ends,
-)
+from symflex.data.measurement.column_meaning import ColumnMeaning, DataColumn, columns_asked, meaning_of
+from symflex.data.measurement.columns import CROSS, Assembled, assembled, names_of, unit_by_round_ends
 from symflex.data.measurement.isolated import read_isolated
+from symflex.data.measurement.likely_readings import WITHOUT_AXIS, WITHOUT_TIME, ask, option_in_time
 from symflex.data.measurement.measured_response import (
     MAX_BYTES,
     MAX_RESPONSES,

@@ -1,159 +1,66 @@
-"""What columns mean, by their names or as ``--columns`` says, and the responses they make.
+"""The responses that columns make.
 
-    "Trace 1: Gain: Magnitude (dB)"   ->  magnitude in dB, of "Trace 1"
-    "-Im(Z)/Ohm"                      ->  imaginary part times -1
+Input: columns with their meanings. Output: responses, and what was guessed; what stays open is asked for.
 
-A unit that is not said is found from the numbers. Logarithm of magnitude and phase of a causal function are
-Hilbert transforms of each other, so their slopes have equal energy (Titchmarsh 1937, theorem 90), and so has
-circular noise: a phase read in the wrong unit is 57 times too steep or too flat. Straight lines, which powers
-of s and delays add, are taken out before. What stays open is asked for.
+    f [kHz]; gain [dB]; phase [deg]   ->  frequencies in Hz, complex values
+
+A unit that is not said is found from the numbers, as magnitude and phase of a causal function determine each
+other (:mod:`symflex.data.measurement.minimum_phase`).
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
-from itertools import pairwise, permutations, product
-from typing import Any, Final, TypeVar
+from itertools import pairwise, product
+from typing import Final, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
+from symflex.data.measurement.column_meaning import (
+    FREQUENCY_UNITS,
+    IN_OR_OUT,
+    KINDS,
+    OHMS,
+    PHASE_UNITS,
+    WORDS,
+    ColumnMeaning,
+    DataColumn,
+    counts,
+    size_of,
+)
+from symflex.data.measurement.likely_readings import MOST_LISTED, UNDECIDED, ask
 from symflex.data.measurement.measured_response import MAX_ERRORS, MAX_RESPONSES, are_few, unit_of
-from symflex.data.measurement.text_table import bare
-from symflex.errors import DataError, Diagnostic, Span, nearest, refused
+from symflex.data.measurement.minimum_phase import (
+    FEWEST_TO_DECIDE,
+    WRAPPED,
+    minimum_phase,
+    misfit,
+    unlikeness,
+)
+from symflex.errors import DataError, Diagnostic, Span, nearest
 
 Choice = TypeVar("Choice", str, float)
 Real = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
 
-_WORDS: Final = {
-    "coherence": "coherence coh gamma2 gamma^2 coherency kohärenz cohérence coherencia coerenza",
-    "phase": "phase phas phs pha phse angle ang arg argument phi φ θ θz theta zphz ph cph winkel fase fas "
-    "phasenwinkel phasengang déphasage faza фаза 相位 位相",
-    "imaginary": "im imag imaginary imaginär imaginärteil imaginaire imaginaria immaginaria zim zimag zimg "
-    "z'' zs'' quadrature 虚部",
-    "real": "re real realteil réel réelle reale zre zreal z' zs' inphase 実部 实部",
-    "power": "psd power pxx autopower",
-    "magnitude": "magnitude mag magn magnitud magnitudine gain amplitude ampl amp amplitud ampiezza abs "
-    "ganho ganancia guadagno modulus module modulo módulo level spl |h| |z| z zmod impedance imp betrag "
-    "transmissibility verstärkung pegel logmag linmag db dbspl dbv dbr амплитуда 幅值 幅度 振幅 ゲイン 利得",
-    "omega": "omega w ω angular",
-    "frequency": "frequency freq frequencies freqs frq acfrequency f hz fhz khz mhz ghz stimulus hertz "
-    "frequenz fréquence frequenza frecuencia frequência frekvens frequentie частота 频率 周波数",
-}  # fmt: skip
-"""Words by which a column is known, the first kind that has one of them."""
-KINDS: Final = {word: kind for kind, words in _WORDS.items() for word in words.split()}
-_SPREAD: Final = frozenset("std stdev sd sigma err unc uncertainty var variance snr thd margin".split())
-"""Words of columns that say how accurate others are, or how far from a limit."""
-_PARTS: Final = r"gamma\^?2|[^\W\d_]+'*|\|\w\|"
-_OHMS: Final = ("ohm", "ohms", "\u03c9", "\u2126")
-_FREQUENCY_UNITS: Final = {
-    **dict.fromkeys(("hz", "hertz", "гц"), 1.0), "khz": 1e3, "mhz": 1e6, "ghz": 1e9,
-    **dict.fromkeys(("rad/s", "rad_s", "rads", "rad/sec", "rad/second"), 1 / (2 * np.pi)),
-}  # fmt: skip
-_DEGREES: Final = (
-    "deg", "degree", "degrees", "grad", "grados", "degrés", "gradi", "graden", "grader", "graus", "град",
-    "度", "degs", "°", "º", "ø", "*", "\ufffd",
-)  # fmt: skip
-_PHASE_UNITS: Final = dict.fromkeys(_DEGREES, np.pi / 180) | dict.fromkeys(
-    ("rad", "radian", "radians", "rads"), 1.0
-)
-_LEVELS: Final = ("db", "дб", "decibel")
-UNITS: Final = frozenset((*_FREQUENCY_UNITS, *_PHASE_UNITS, *_LEVELS, *_OHMS))
-_SPICE = re.compile(r"\bv(db|p|m|r|i)(?=\()|\bi(db|p)(?=\()|\b(p)(?=\([vi]\()|^(r|i)(?= \S+\.[vi]$)", re.I)
-_SPICE_KINDS: Final = {"db": "db", "p": "phase", "m": "mag", "r": "re", "i": "im"}
-"""Functions by which circuit simulators name columns: VDB(out), P(V(out)), r out.v."""
-LISTED = 12  # names of columns in a message; of more there are dots
-_NEGATIVE = re.compile(r"(?:-|neg(?:ative)?\b\.?|minus\b)\s*(?=\D)", re.I)
-_JOINED = re.compile(
-    r"(?<=[a-z]{3})(?=[A-Z][a-z]|dB\b)|(?<=^[GHYZ])(?=(?:re|im)(?:al|ag)?\b)|(?<=^Re|^Im)(?=[A-Z]\d*$)"
-)
-"""Where words are joined: FrequencyHz, magdB, Hreal, ImH."""
-_END = re.compile(r"(?:v|u|i|signal|voltage|ch\w?)?[ _.(]*(in|out)(?:put)?\)?", re.I)
-"""Labels of what goes in and what comes out: Vin, V(out), u_in, Output."""
-_OTHER_SIZE = re.compile(r"squared|(?:\||mag\w*)\s*(?:\^2|²)|^ln\b|[([]\s*(?:np|nepers?)\s*[])]", re.I)
-"""Names of squares and natural logarithms of magnitudes, which are no magnitudes."""
-_LEVEL = re.compile(r"\b[12]0\s*\*?\s*log(?:_?10)?\s*(?:db\b)?", re.I)
-"""What a level in dB is: of a power ten times its logarithm."""
-_LOGARITHM = re.compile(r"^l(?:og|g)(?:_?10)?(?![\s_]*mag)[\s_]*(?=[\W_f]|omega|freq|[wz]\b)", re.I)
-_NO_WORD = re.compile(
-    rf"{_OTHER_SIZE.pattern}|\b(?:time|zeit|temps|tiempo)\b|^t\b|^f\s*/\s*f|\b(?:shift|detuning)\b", re.I
-)
-"""Names of what no word of ``--columns`` means."""
 _SIGNALS: Final = dict.fromkeys(("e", "v", "u", "voltage"), "out") | dict.fromkeys(("i", "current"), "in")
 """Labels of a voltage and a current, whose ratio is an impedance."""
 _FORCE = re.compile(r"force|hammer|excitation|kraft", re.I)
 CROSS = re.compile(r"[sgp]_?(?:xy|yx)|.*\b(?:csd|cross)\b.*", re.I)
-_LETTERS: Final = {
-    ("x", "y"): ("real", "imaginary"),  # of lock-in amplifiers
-    ("i", "q"): ("real", "imaginary"),
-    ("r", "x"): ("real", "imaginary"),  # of impedances
-    ("rs", "xs"): ("real", "imaginary"),
-    ("g", "b"): ("real", "imaginary"),  # of admittances
-}
-"""Letters that mean something as a pair alone."""
-_BRACKET = re.compile(r"[\[({<]\s*([^\[\](){}<>]*(?:\([^()]*\)[^\[\](){}<>]*)?)\s*[\])}>]")
-_SUFFIX = re.compile(
-    r"(?:[\s_/,:.]|\bin |(?<=\w\d)(?=d))\s*(hz|khz|mhz|ghz|rad/s|rad_s|db|deg|degrees?|rad|radians?|ohms?|"
-    r"°|º|гц|дб|grad|град)\s*$"
-    r"|(?<=\S)\s+/\s+(\S+)\s*$",
-    re.I,
-)
-HINT: Final = (
-    "columns: frequency_hz; re, im or magnitude_db, phase_deg or magnitude, phase_rad; coherence if known"
-)
-WITHOUT_TIME: Final = "of a record in time, say the sampling time: --columns {}"
-WITHOUT_AXIS: Final = "if the file has no frequencies, --from HZ --step HZ give them"
-UNDECIDED: Final = 1.5  # natural logarithm of how much less causal the other reading has to be
-WRAPPED: Final = 2 * np.pi * 1.001  # largest range of phases that may have been wrapped
 FITS: Final = 1.0  # beyond it numbers are like no causal function: the ratio of energies is beyond a factor e
 DECADE: Final = 10.0  # ratio of the largest and smallest of positive numbers up to which they may well be dB
-LEAST_LEVELS: Final = 1.0  # range [dB] below which positive numbers are rather ratios
-SAME_SIZE: Final = 0.02  # relative deviation up to which a value is that of another column, of few digits
-MOST_ALIKE: Final = 0.9  # share of lines from which a column is another one, or a counter
-MOST_LISTED: Final = 6  # columns that are not used and are listed by name
 ROUNDED_COHERENCE: Final = 1.01  # up to which coherence was rounded upwards
-EVENLY, HELD = 0.02, 0.1  # median deviation of a time's steps; share of equal neighbours in signals
 FILLED: Final = 0.95
 SAME_BAND: Final = 0.5  # share of each sweep's lines in the band common to all; with less, they are segments
 SAME_FREQUENCY: Final = 1e-3  # relative distance up to which two columns hold the same frequency
 SAME_PHASE: Final = 1e-2  # median difference [rad] of one phase in degrees and in radians
 UNLIKE, CLEARLY = 0.1, 4.0  # mean of 1 - cos of phases that are alike; how much closer one has to be
-FEWEST_TO_DECIDE: Final = 8
 MOST_DECADES: Final = 18  # decimal logarithm of the highest frequency [Hz]: larger ones are no logarithms
 ROUND: Final = 1e-7  # relative deviation from three digits below which a number was meant to be round
-LONGEST_NAME: Final = 200
-BEYOND: Final = 7.0  # how far a magnitude is continued beyond its ends: a factor e^7 in frequency
-
-
-@dataclass(frozen=True, slots=True)
-class ColumnMeaning:
-    """What a column is."""
-
-    kind: str = ""  # of _WORDS without omega, or complex; empty where it is none of these
-    factor: float | None = 1.0  # to Hz or radians; None if no unit is said
-    scale: str = "linear"  # or decibel, logarithm (of a frequency, to base 10), unknown
-    label: str = ""  # of which response
-    unit: str = ""  # as written
-    word: str = ""  # the one by which it is known
-
-
 _RATIO: Final = ColumnMeaning("magnitude", word="ratio")
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class DataColumn:
-    """One column of a table."""
-
-    name: str
-    meaning: ColumnMeaning
-    numbers: npt.NDArray[Any]  # nan where there is none
-    wrong: tuple[int, ...] = ()  # rows without a number
-    span: Span | None = None  # of its name
-    place: Callable[[int], Span | None] = lambda _: None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -169,184 +76,12 @@ class Assembled:
     is_magnitude: bool = False  # whether there is no phase
 
 
-@lru_cache(1000)
-def meaning_of(name: str, unit_below: str = "") -> ColumnMeaning:
-    """Return what a name, and the unit in a row below it, say a column is.
-
-    >>> meaning_of("Trace 2: Gain: Phase (°)").factor, meaning_of("Freq(kHz)").factor
-    (0.017453292519943295, 1000.0)
-    >>> meaning_of("S11(REAL)").kind, meaning_of("S11(REAL)").label, meaning_of("Time").kind
-    ('real', 'S11', '')
-    """
-    if len(name) > LONGEST_NAME:
-        return ColumnMeaning()
-    written = re.sub(r"(?<=z)\"(?=\W)", "''", bare(name).strip(" #*%!;:"), flags=re.I).replace("µ", "u")
-    unit = unit_below.strip("[]<> ").replace("µ", "u")
-    unit = unit[1:-1] if re.fullmatch(r"\([^()]*\)", unit) else unit
-    text, sign, is_log = _spelled(written)
-    if text.strip().lower() in _PHASE_UNITS:
-        unit = text.strip()
-    for bracket in _BRACKET.finditer(text):
-        inside = bracket[1].strip()
-        parts = re.findall(_PARTS, inside.lower())
-        is_unit = inside.lower() in UNITS or inside == "F"  # farad
-        is_named = "_" in inside and not is_unit  # Re(A_1/F); units have no underscore
-        is_argument = re.search(r"\w$", text[: bracket.start()]) and (
-            is_named or re.fullmatch(r"/?[\w .]*(?:\([\w .,]*\))?[\w .]*", inside)
-        )
-        if (
-            is_unit
-            or ("/" in inside[1:] and not is_named)
-            or not (is_argument or unit.lower() in UNITS or any(p in KINDS for p in parts))
-        ):
-            unit, text = inside, text.replace(bracket[0], " " * len(bracket[0]))
-    if not unit and (match := _SUFFIX.search(text)):
-        unit, text = match[1] or match[2], text[: match.start()]
-    if not unit and (match := re.match(r"deg(?=[:(])", text, re.I)):
-        unit, text = match[0], text[match.end() :]
-    low = re.sub(r"in[-_]phase", "inphase", text.lower())
-    words = re.findall(_PARTS, re.sub(r"(?<=\w)\s*/\s*f(?![^\W\d_])", " ", low))  # F in X/F is a force
-    kind = next((k for k in _WORDS if any(KINDS.get(w) == k for w in words)), "")
-    if not kind and unit:
-        is_size = unit.lower() in _LEVELS or (unit.lower() in _OHMS and low.startswith("z"))
-        is_phase = unit.lower() in (*_DEGREES[:-2], low)
-        is_frequency = unit.lower() in _FREQUENCY_UNITS
-        kind = "magnitude" if is_size else "frequency" if is_frequency else "phase" if is_phase else ""
-    kind, unit = ("magnitude", text.strip()) if not kind and text.strip().lower() in _OHMS else (kind, unit)
-    if unit.lower() in _FREQUENCY_UNITS and {"frequency", "freq"} & set(words):
-        kind = "frequency"  # "Frequency - Phase (Hz)", beside the phase
-    if kind == "phase" and unit.lower() not in _PHASE_UNITS and set(_DEGREES) & set(words):
-        unit = "deg"
-    is_of_other = kind in ("frequency", "omega") and (
-        {"response", "function", "ln"} & set(words) or re.search(r"\b[fwω]\s*/\s*[fwω]", low)
-    )
-    is_other_size = kind == "magnitude" and unit.lower() not in _LEVELS and _OTHER_SIZE.search(written)
-    kind = "" if is_of_other or is_other_size or _SPREAD & set(words) else kind
-    word = next((w for w in words if KINDS.get(w) == kind), "")
-
-    def kept(match: re.Match[str]) -> str:
-        part = match[0].lower()
-        return "" if part == word or (len(part) > 1 and part in KINDS) else match[0]
-
-    label = " ".join(re.sub(_PARTS, kept, text).split())
-    label = re.sub(r"[(\[]\W*[)\]]", "", label).strip(" :;,.-_'|")
-    label = label[1:-1] if re.fullmatch(r"\([^()]*\)", label) else label
-    if not kind and _END.fullmatch(label):
-        kind = "magnitude"
-    if kind in ("magnitude", "power") and not unit:
-        unit = "dB" if "db" in words else "lin" if {"abs", "lin", "linear"} & set(words) else ""
-    meaning = ColumnMeaning(kind, label=label, unit=unit, word=word)
-    return _with_unit(meaning, unit, sign, is_log or (kind != "magnitude" and "log" in words))
-
-
-def _spelled(written: str) -> tuple[str, float, bool]:
-    """Return a name in the usual words, without the sign before it and whether it is a logarithm."""
-    text = re.sub(
-        r"\bdb\s+re\b[^)\]]*", "dB", written.replace("\u2220", "phase ").replace("Â°", "°"), flags=re.I
-    )
-    text = re.sub(r"\|([^|hz]|[^|]{2,})\|", r"mag \1", text, flags=re.I)
-    text = _SPICE.sub(lambda m: _SPICE_KINDS[(m[1] or m[2] or m[3] or m[4]).lower()], text)
-    text = re.sub(
-        r"^(l\w+)\s*\(\s*([^()/]+)/([^()/]+)\)",
-        r"\1 \2 [\3]",
-        _LEVEL.sub(lambda m: "power " * (m[0][0] == "1") + "dB", text),
-        flags=re.I,
-    )
-    is_log = bool(_LOGARITHM.match(text))
-    text = _LOGARITHM.sub("", text)
-    sign = -1.0 if _NEGATIVE.match(text) else 1.0
-    text = _NEGATIVE.sub("", text, count=1) if sign < 0 else text
-    return text, sign, is_log
-
-
-def _with_unit(column: ColumnMeaning, unit: str, sign: float, is_log: bool) -> ColumnMeaning:
-    small = unit.lower().rstrip(".")
-    if column.kind in ("frequency", "omega"):
-        own = "rad/s" if column.kind == "omega" else column.word if column.word in _FREQUENCY_UNITS else ""
-        is_angular = small == "rad" or (column.kind == "omega" and small in ("1/s", "s^-1"))
-        factor = 1e-3 if unit == "mHz" else _FREQUENCY_UNITS.get("rad/s" if is_angular else small or own)
-        return replace(column, kind="frequency", factor=factor, scale="logarithm" if is_log else "linear")
-    if column.kind == "phase":
-        factor = _PHASE_UNITS.get(small)
-        return replace(column, factor=None if factor is None else sign * factor)
-    if column.kind in ("magnitude", "power"):
-        is_level = small.startswith(_LEVELS) or column.word.startswith(("db", "logmag", "spl"))
-        plain = "logarithm" if is_log else "unknown" if small in ("", "-") else "linear"
-        return replace(column, scale="decibel" if is_level else plain)
-    return replace(column, factor=sign)
-
-
-def meanings_of(names: Sequence[str], units_below: Sequence[str] = ()) -> list[ColumnMeaning]:
-    """Return what columns are; letters such as X and Y, or R and theta, mean something beside each other.
-
-    >>> [m.kind for m in meanings_of(["Freq", "X (V)", "Y (V)"])]
-    ['frequency', 'real', 'imaginary']
-    """
-    below = list(units_below) or [""] * len(names)
-    read = [meaning_of(name, unit) for name, unit in zip(names, below, strict=True)]
-    apart = [meaning_of(_JOINED.sub(" ", name), unit) for name, unit in zip(names, below, strict=True)]
-    read = [other if other.kind and not one.kind else one for one, other in zip(read, apart, strict=True)]
-    kinds = {m.kind for m in read}
-    if "phase" in kinds and "magnitude" not in kinds:  # "H1 (g/N)" beside "H1 Phase (deg)"
-        turned = {m.label for m in read if m.kind == "phase"}
-        ratios = {m.label for m in read if not m.kind and "/" in m.unit + m.label}
-        turned = ratios if turned == {""} and len(ratios) == 1 else turned - {""}  # "Receptance (m/N)"
-        for i, m in enumerate(read):
-            if not m.kind and m.label in turned and "/" in m.unit + m.label:
-                read[i] = meaning_of(f"magnitude {m.label}", m.unit)
-        kinds = {m.kind for m in read}
-    if "frequency" not in kinds or {"real", "imaginary"} <= kinds or {"magnitude", "phase"} <= kinds:
-        return read
-    letters: dict[str, int] = {}
-    for i, meaning in enumerate(read):
-        if not meaning.kind and (first := re.match(r"[a-z]{1,2}\b", meaning.label, re.I)):
-            letters.setdefault(first[0].lower(), i)
-    pairs = [pair for pair in _LETTERS if set(pair) <= set(letters)]
-    if "phase" in kinds and "r" in letters:
-        read[letters["r"]] = replace(meaning_of("magnitude", read[letters["r"]].unit), word="r")
-    elif len(pairs) == 1 and not any(m.word == "z" for m in read):
-        for letter, kind in zip(pairs[0], _LETTERS[pairs[0]], strict=True):
-            i = letters[letter]
-            read[i] = ColumnMeaning(kind, 1.0, unit=read[i].unit, word=letter)
-    return read
-
-
-def counts(numbers: npt.NDArray[Any]) -> bool:
-    """Return whether a column numbers its rows, from 0 or from 1."""
-    return numbers.size > 1 and numbers[0].real in (0, 1) and bool(np.all(np.diff(numbers.real) == 1))
-
-
 def names_of(made: Sequence[Assembled], stem: str) -> list[str]:
     """Return what responses are called: the file's stem, their labels, or the stem with a number."""
     labels = [one.label for one in made]
     if len(made) == 1 or (all(labels) and len(set(labels)) == len(labels)):
         return [stem] if len(made) == 1 else labels
     return [f"{stem} {i + 1}" for i in range(len(made))]
-
-
-def columns_asked(asked: str, width: int, names: Sequence[str] = ()) -> list[ColumnMeaning]:
-    """Return what ``--columns`` says of columns, in order; SF902 for an unknown word or too many of them.
-
-    >>> [m.kind for m in columns_asked("f,-,mag_db,phase", 4)]
-    ['frequency', '', 'magnitude', 'phase']
-    """
-    words = [word.strip() for word in asked.split(",")]
-    hint = "such as f,re,im or f_khz,-,mag_db,phase_deg: f, omega, re, im, mag, mag_db, phase, coh, h, psd, -"
-    if len(words) > width:
-        called = [name[:30] for name in names if name]
-        listed = f": {', '.join(called[:LISTED])}{', ...' if len(called) > LISTED else ''}" if called else ""
-        raise refused(f"--columns has {len(words)} words, and there are {width} columns{listed}", hint)
-    columns = []
-    for word in words:
-        meaning = ColumnMeaning("complex") if word in ("h", "H", "complex") else meaning_of(word)
-        if not meaning.kind and word not in ("", "-"):
-            raise refused(f"--columns: unknown column '{word[:40]}'", hint)
-        if meaning.kind == "frequency" and meaning.factor is None and not meaning.unit:
-            meaning = replace(meaning, factor=1.0)
-        if meaning.kind == "magnitude" and meaning.scale == "unknown":
-            meaning = replace(meaning, scale="linear")
-        columns.append(meaning)
-    return columns + [ColumnMeaning()] * (width - len(words))
 
 
 def assembled(
@@ -460,7 +195,7 @@ def _with_frequency(
     for c in columns:
         is_unknown = c.meaning.kind in ("frequency", "phase") and c.meaning.factor is None
         if is_unknown and c.meaning.unit not in ("-", ""):
-            units = _FREQUENCY_UNITS if c.meaning.kind == "frequency" else _PHASE_UNITS
+            units = FREQUENCY_UNITS if c.meaning.kind == "frequency" else PHASE_UNITS
             said = f"unknown unit '{c.meaning.unit[:20]}' of column '{c.name[:40]}'"
             problems.append(Diagnostic("SF602", said, c.span, f"units: {', '.join(list(units)[:5])}"))
     if problems:
@@ -489,17 +224,17 @@ def _with_frequency(
     if first.meaning.kind or is_named or is_index or not steps.size or not is_monotonic:
         place = "" if header else f"'{file}': "
         raise DataError(Diagnostic("SF602", f"{place}no column is the frequency", header, ask(columns)))
-    factor = _FREQUENCY_UNITS.get(first.meaning.unit.lower())
+    factor = FREQUENCY_UNITS.get(first.meaning.unit.lower())
     unit = first.meaning.unit if factor else unit_by_round_ends(first.numbers.real) or "Hz"
     why = ", in which its ends are round numbers" if unit == "rad/s" and not factor else ""
     guesses.append(f"column 1 has no name and is taken as the frequency in {unit}{why}")
-    return [replace(first, meaning=ColumnMeaning("frequency", _FREQUENCY_UNITS[unit.lower()])), *columns[1:]]
+    return [replace(first, meaning=ColumnMeaning("frequency", FREQUENCY_UNITS[unit.lower()])), *columns[1:]]
 
 
 def _over_input(columns: list[DataColumn], guesses: list[str]) -> list[DataColumn]:
     """Return columns with what comes out over what goes in, where both are sizes without phases."""
     sizes = [c for c in columns if c.meaning.kind in ("magnitude", "power")]
-    ends = {c: match[1].lower() for c in sizes if (match := _END.fullmatch(c.meaning.label))}
+    ends = {c: match[1].lower() for c in sizes if (match := IN_OR_OUT.fullmatch(c.meaning.label))}
     turned = [re.split(r"\s*[-/]\s*", c.meaning.label) for c in columns if c.meaning.kind == "phase"]
     if not ends and [len(labels) for labels in turned] == [2]:  # one phase, of CH2-CH1
         ends = {c: ("out", "in")[turned[0].index(x)] for c in sizes if (x := c.meaning.label) in turned[0]}
@@ -521,12 +256,12 @@ def _over_input(columns: list[DataColumn], guesses: list[str]) -> list[DataColum
 def _plain_size(column: DataColumn) -> Real:
     is_level = column.meaning.scale == "unknown" and np.any(column.numbers.real < 0)
     with np.errstate(all="ignore"):
-        return _size(column, "decibel" if is_level else column.meaning.scale)
+        return size_of(column, "decibel" if is_level else column.meaning.scale)
 
 
 def _made_over_input(made: list[Assembled], guesses: list[str]) -> list[Assembled]:
     """Return one response for two, of which one is what goes in and the other what comes out."""
-    ends = [match[1].lower() if (match := _END.fullmatch(m.label)) else "" for m in made]
+    ends = [match[1].lower() if (match := IN_OR_OUT.fullmatch(m.label)) else "" for m in made]
     signals = [_SIGNALS.get(m.label.lower(), "") for m in made]
     if any(signals) and any(m.label.lower() in ("z", "impedance") for m in made):
         listed = ", ".join(f"'{m.label}'" for m, signal in zip(made, signals, strict=True) if signal)
@@ -583,10 +318,10 @@ def _hertz(column: DataColumn, guesses: list[str]) -> Real:
         numbers = 10.0**numbers
     if factor is None:
         is_angular = unit_by_round_ends(numbers) == "rad/s"
-        factor = _FREQUENCY_UNITS["rad/s"] if is_angular else 1.0
+        factor = FREQUENCY_UNITS["rad/s"] if is_angular else 1.0
         said = "rad/s, in which its ends are round numbers" if is_angular else "Hz"
         guesses.append(f"'{column.name[:30]}' has no unit and is read in {said}")
-    if column.meaning.word in _WORDS["omega"] and column.meaning.word and not column.meaning.unit:
+    if column.meaning.word in WORDS["omega"] and column.meaning.word and not column.meaning.unit:
         guesses.append(f"'{column.name[:30]}' has no unit and is read in rad/s")
     return numbers * factor
 
@@ -721,14 +456,6 @@ def _without_zeros(group: dict[str, DataColumn], guesses: list[str]) -> dict[str
     return {"magnitude": size} | {k: c for k, c in group.items() if k == "coherence"}
 
 
-def _size(column: DataColumn, scale: str) -> Real:
-    numbers = column.numbers.real / (100 if column.meaning.unit == "%" else 1)
-    if scale in ("decibel", "logarithm"):
-        return np.asarray(10 ** (numbers / (20 if scale == "decibel" else 1)))
-    numbers = np.where(numbers < 0, np.nan, numbers)
-    return np.asarray(np.sqrt(numbers) if column.meaning.kind == "power" else numbers)
-
-
 def _decided(
     magnitude: DataColumn, phase: DataColumn, lines: Real, guesses: list[str], columns: Sequence[DataColumn]
 ) -> tuple[Real, Real]:
@@ -737,7 +464,7 @@ def _decided(
         levels = magnitude.numbers * (2 if magnitude.meaning.scale == "decibel" else 1)
         itself = replace(magnitude, numbers=levels, meaning=replace(magnitude.meaning, kind="magnitude"))
         radians = phase.numbers.real * (phase.meaning.factor or np.pi / 180)
-        root_fit, own_fit = (_misfit(lines, _plain_size(c), radians) for c in (magnitude, itself))
+        root_fit, own_fit = (misfit(lines, _plain_size(c), radians) for c in (magnitude, itself))
         magnitude = itself if own_fit < root_fit else magnitude
         which = "the response itself" if own_fit < root_fit else "the square of the magnitude"
         guesses.append(f"{_called(magnitude, 'the power')} is {which}, which fits the phase")
@@ -747,7 +474,7 @@ def _decided(
     turn = np.asarray(phase.numbers.real, np.float64)
     factors = _possible_units(turn) if phase.meaning.factor is None else [phase.meaning.factor]
     is_gain = magnitude.meaning.word in ("gain", "level")
-    costs = {(s, f): _unlikeness(lines, _size(magnitude, s), f * turn) for s, f in product(scales, factors)}
+    costs = {(s, f): unlikeness(lines, size_of(magnitude, s), f * turn) for s, f in product(scales, factors)}
     usual = [costs[scales[0], f] for f in factors]
     # A plain magnitude is the usual reading; both are open for a gain, where it does not fit, and where dB
     # within a decade fit nearly as well.
@@ -776,7 +503,7 @@ def _decided(
     if magnitude.meaning.scale == "unknown":
         said = "in dB" if scale == "decibel" else "as a ratio, not in dB"
         guesses.append(f"'{magnitude.name[:30]}' has no unit and is read {said}")
-    size, turned = _size(magnitude, scale), np.asarray(factor * phase.numbers.real, np.float64)
+    size, turned = size_of(magnitude, scale), np.asarray(factor * phase.numbers.real, np.float64)
     if factor > 0 and _are_lags(lines, size, turned):
         if re.search(r"\blags?\b", phase.name, re.I):
             guesses.append(f"{_called(phase, 'a column')} is the phase times -1")
@@ -816,58 +543,9 @@ def _best(costs: dict[Choice, float], margin: float) -> Choice | None:
     return choice if is_clear else None
 
 
-def _unlikeness(lines: Real, size: Real, phase: Real) -> float:
-    """Return the logarithm of the ratio of the energies that the slopes of ln(size) and phase have."""
-    kept = (lines > 0) & (size > 0) & np.isfinite(size) & np.isfinite(phase) & np.isfinite(lines)
-    if kept.sum() < FEWEST_TO_DECIDE:
-        return 0.0
-    x, neper, turn = lines[kept], np.log(size[kept]), phase[kept]
-    if np.ptp(turn) <= WRAPPED:
-        turn = np.unwrap(turn)
-    energies = [
-        float(np.linalg.norm(np.diff(y - slope * (t - t.mean()))))
-        for t, y in ((np.log(x), neper), (x, turn))
-        for slope in [np.cov(t, y)[0, 1] / max(float(np.var(t, ddof=1)), 1e-300)]
-    ]
-    return abs(float(np.log((energies[1] + 1e-12) / (energies[0] + 1e-12))))
-
-
-def _misfit(lines: Real, size: Real, phase: Real) -> float:
-    """Return how unlike a causal function, and one of minimum phase and either sign, a response is."""
-    alike = np.nan_to_num(np.abs(np.cos(phase - minimum_phase(lines, size))))
-    return _unlikeness(lines, size, phase) + float(np.mean(1 - alike))
-
-
-def minimum_phase(lines: Real, size: Real) -> Real:
-    """Return the phase [rad] that the magnitude of a function without zeros on the right has."""
-    # 2 w/pi times the integral of (ln|H(v)| - ln|H(w)|)/(v^2 - w^2) over v (Bode 1945, chapter 14); beyond
-    # its ends the magnitude goes on with the power of frequency that it has there, rounded. Lines may go
-    # down.
-    kept = np.flatnonzero((lines > 0) & (size > 0) & np.isfinite(size) & np.isfinite(lines))
-    kept = kept[np.argsort(lines[kept])]
-    x, y = np.log(lines[kept]), np.log(size[kept])
-    phase = np.zeros(lines.size)
-    if x.size < FEWEST_TO_DECIDE or np.any(np.diff(x) <= 0):
-        return phase
-    end = max(x.size // 20, 3)
-    low, high = (round(float(np.polyfit(x[s], y[s], 1)[0])) for s in (slice(end), slice(-end, None)))
-    step = max((x[-1] - x[0] + 2 * BEYOND) / 2**19, float(np.quantile(np.diff(x), 0.05)))
-    grid = np.arange(x[0] - BEYOND, x[-1] + BEYOND, step)
-    slope = np.diff(np.interp(grid, x, y)) + step * np.where(grid[1:] < x[0], low, high * (grid[1:] > x[-1]))
-    # By parts the kernel is ln(coth(|u|/2)), u = ln(v/w); over the step at u = 0 its mean is 1 + ln(4/step).
-    u = step * np.abs(np.arange(-slope.size, slope.size))
-    kernel = -np.log(np.tanh(np.where(u == 0, 1.0, u) / 2))
-    kernel[slope.size] = 1 + np.log(4 / step)
-    size_2 = 2 ** int(np.ceil(np.log2(3 * slope.size)))
-    folded = np.fft.irfft(np.fft.rfft(slope, size_2) * np.fft.rfft(kernel, size_2), size_2)
-    turn = folded[slope.size : 2 * slope.size] / np.pi
-    phase[kept] = np.interp(x, grid[1:] - step / 2, turn)
-    return phase
-
-
 def ratio_unit(text: str, file: str) -> str:
     """Return a unit that a header gives, where it is one of a ratio; g may be the gram and is not taken."""
-    small = "Ohm" if text.lower() in _OHMS else text
+    small = "Ohm" if text.lower() in OHMS else text
     if "/" not in small.replace("Ohm", "/") or re.search(r"\bg\b", small):
         return ""
     try:
@@ -900,134 +578,3 @@ def _missing(columns: Sequence[DataColumn], file: str, header: Span | None) -> D
         return Diagnostic("SF602", message, header, ask(columns))
     hint = " ".join(filter(None, (nearest(unknown.name.lower(), KINDS), ask(columns))))
     return Diagnostic("SF602", f"{message}: unknown column '{unknown.name[:40]}'", unknown.span, hint)
-
-
-SINCE_1970: Final = 1e11  # numbers above which an unnamed axis is a time in milliseconds, no frequency
-MOST_COMPARED: Final = 1000  # lines by which readings are compared
-_READINGS: Final = (("re", "im"), *product(("mag_db", "mag"), ("phase_deg", "phase_rad")))
-"""Words of ``--columns`` that make a response in pairs."""
-
-
-@np.errstate(all="ignore")  # numbers that are not finite are reported elsewhere
-def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, ...] = ()) -> str:
-    """Return the hint with the option that says what columns are, or a pair, the likeliest reading first."""
-    is_indexed = len(columns) > 2 and counts(columns[0].numbers)  # noqa: PLR2004
-    is_indexed = is_indexed and bool(np.all(np.diff(columns[1].numbers.real) > 0))
-    axis = next((i for i, c in enumerate(columns) if c.meaning.kind == "frequency"), int(is_indexed))
-    if re.search(r"\b(?:time|zeit|temps|tiempo|date|datum)\b|^t(?:\b|_)", columns[axis].name, re.I):
-        timed = option_in_time([c.numbers for c in columns[axis:]], axis)
-        return f"'{columns[axis].name[:30]}' is not a frequency: {timed or HINT}"
-    if columns[axis].meaning.kind not in ("", "frequency"):
-        return WITHOUT_AXIS
-    if _NO_WORD.search(columns[axis].name):
-        return f"'{columns[axis].name[:30]}' is not a frequency: write frequencies in Hz or rad/s instead"
-    steps = np.sign(np.diff(columns[axis].numbers.real))
-    most = max(np.sum(steps > 0), np.sum(steps < 0))
-    is_counter = not steps.all() and np.mean(np.diff(columns[axis].numbers) == 1) > MOST_ALIKE
-    if not columns[axis].meaning.kind and (is_counter or most < MOST_ALIKE * steps.size):
-        return WITHOUT_TIME.format(signals([c.numbers for c in columns], ",dt=SECONDS"))
-    is_open = not columns[axis].meaning.kind and steps.size >= FEWEST_TO_DECIDE
-    timed = option_in_time([c.numbers for c in columns[axis:]], axis) if is_open else ""
-    times = columns[axis].numbers.real  # they begin at zero or one step later, as few frequencies do
-    begins = is_open and times[0] <= (1 + HELD) * np.median(np.diff(times)) and not counts(times)
-    is_held = begins or times[0] > SINCE_1970
-    is_held |= any(np.sum(np.diff(c.numbers) == 0) > HELD * c.numbers.size for c in columns[axis + 1 :])
-    open_ones: list[int] = []
-    for i, c in enumerate(columns):
-        if (
-            c.meaning.kind in ("coherence", "frequency")
-            or _NO_WORD.search(c.name)
-            or (pair and c not in pair)
-            or (i < axis and counts(c.numbers))
-        ):
-            continue
-        is_again = any(_is_same(c.numbers.real, columns[k].numbers.real) for k in open_ones)
-        if not is_again and not np.array_equal(c.numbers, columns[axis].numbers):
-            open_ones.append(i)
-    open_ones = open_ones[is_indexed and axis == 0 :] if open_ones[2:] else open_ones
-
-    def option(*words: tuple[str, int]) -> str:
-        """Return the option that says which word each column has, besides the frequency's."""
-        at = {i: word for word, i in words} | {axis: unit}
-        return "--columns " + ",".join(at.get(i, "-") for i in range(max(at) + 1))
-
-    readings = _likely(columns, axis, open_ones, UNDECIDED if pair else UNDECIDED / 3)
-    if readings:
-        these = ", or ".join(option(*zip(words, pair, strict=True)) for words, pair in readings)
-        both = [timed, f"{these} if column {axis + 1} is a frequency"] if timed else [these]
-        return f"say what the columns are: {', or '.join(both if is_held else both[::-1])}"
-    sizes = [i for i in open_ones if columns[i].meaning.kind in ("magnitude", "power", "")]
-    if not sizes:
-        return "a phase alone is not a response: save the magnitude too" if open_ones else HINT
-    i = next((i for i in sizes if columns[i].meaning.kind), sizes[0])
-    options = [option((word, i)) for word in ("mag", "mag_db", "psd") if _may_be(columns[i], word)]
-    alone = f"{' or '.join(options)} reads the magnitude alone, and minimum phase is assumed"
-    return f"say what the columns are: {timed}, or {alone}" if timed else alone
-
-
-def signals(columns: Sequence[npt.NDArray[Any]], end: str = "") -> str:
-    """Return the words of ``--columns`` for an input and an output, and ``end``, from columns that change."""
-    # Columns that count are no signals. If more than two columns change, the text says which these are.
-    do_count = [np.sum(np.diff(x) == 1) > MOST_ALIKE * x.size for x in columns]
-    changing = [i for i, x in enumerate(columns) if np.ptp(x.real) > 0 and not do_count[i]]
-    places = dict(zip(changing, "uy" if len(changing) > 1 else "y", strict=False))
-    words = ",".join(places.get(i, "-") for i in range(max(places, default=-1) + 1)) or "y"
-    more = " (u and y are the first two columns that change: move them, with - for what is left out)"
-    return words + end + more * (len(changing) > 2)  # noqa: PLR2004 (an input and an output)
-
-
-@np.errstate(all="ignore")
-def option_in_time(columns: Sequence[npt.NDArray[Any]], before: int = 0) -> str:
-    """Return the option that reads columns as a record in time, nothing where the first is no time."""
-    times = columns[0].real
-    if counts(times):
-        return f"--columns {'-,' * (before + 1)}{signals(columns[1:], ',dt=SECONDS of a record in time')}"
-    steps, usual = np.diff(times), np.median(np.diff(times))
-    if times[0] and not np.median(np.abs(steps - usual)) <= EVENLY * usual:
-        return ""
-    return f"--columns {'-,' * before}t,{signals(columns[1:], ' of a record in time')}"
-
-
-def _is_same(values: Real, other: Real) -> bool:
-    """Return whether a column has the numbers of another, perhaps as a ratio where that is in dB."""
-    ways = (other, 10 ** (other / 20), 20 * np.log10(other))
-    return any(np.mean(np.abs(values / way - 1) <= SAME_SIZE) > MOST_ALIKE for way in ways)
-
-
-def _may_be(column: DataColumn, word: str) -> bool:
-    """Return whether neither the name of a column nor its numbers contradict a word of ``--columns``."""
-    meaning, asked, numbers = column.meaning, meaning_of(word), column.numbers.real
-    if meaning.kind and (meaning.kind != asked.kind or {meaning.factor, asked.factor} == {1.0, np.pi / 180}):
-        return False
-    are_sizes = bool(np.all(numbers > 0))
-    if word == "mag":
-        return are_sizes and meaning.scale != "decibel"
-    if word == "mag_db" and meaning.scale != "decibel":
-        is_open = meaning.scale == "unknown" or not meaning.kind
-        return is_open and not (are_sizes and np.ptp(numbers) < LEAST_LEVELS)
-    return word != "psd" or bool(meaning.kind)
-
-
-def _likely(
-    columns: Sequence[DataColumn], axis: int, open_ones: Sequence[int], margin: float
-) -> list[tuple[tuple[str, str], tuple[int, int]]]:
-    """Return the readings of two columns as one response, words and places, the likeliest first."""
-    columns = [replace(c, numbers=c.numbers[:: c.numbers.size // MOST_COMPARED + 1]) for c in columns]
-    lines, costs = np.asarray(columns[axis].numbers.real, np.float64), {}
-    are_known = any(columns[i].meaning.kind for i in open_ones)
-    for pair, words in product(permutations(open_ones[:MOST_LISTED], 2), _READINGS):
-        one, two = (columns[i] for i in pair)
-        kinds = {one.meaning.kind, two.meaning.kind}
-        is_other = kinds in ({""}, {"", "magnitude"}) if are_known else pair[0] > pair[1]
-        if is_other or not (_may_be(one, words[0]) and _may_be(two, words[1])):
-            continue
-        if words[0] == "re":
-            values = one.numbers.real + 1j * two.numbers.real
-            size, turn = np.abs(values), np.unwrap(np.angle(values))
-        else:
-            size = _size(one, "decibel" if words[0] == "mag_db" else "linear")
-            turn = two.numbers.real * (np.pi / 180 if words[1] == "phase_deg" else 1.0)
-        costs[words, pair] = _misfit(lines, size, turn)
-    best = min(costs.values(), default=0.0)
-    near = [reading for reading in costs if costs[reading] <= best + margin]
-    return sorted(near, key=costs.__getitem__)[:3]

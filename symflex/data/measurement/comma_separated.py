@@ -16,23 +16,17 @@ from typing import Final
 
 import numpy as np
 
-from symflex.data.measurement.columns import (
-    HINT,
+from symflex.data.measurement.column_meaning import (
     UNITS,
-    WITHOUT_AXIS,
-    WITHOUT_TIME,
-    Assembled,
     ColumnMeaning,
     DataColumn,
-    ask,
-    assembled,
     columns_asked,
     counts,
     meaning_of,
     meanings_of,
-    names_of,
-    ratio_unit,
 )
+from symflex.data.measurement.columns import Assembled, assembled, names_of, ratio_unit
+from symflex.data.measurement.likely_readings import HINT, WITHOUT_AXIS, WITHOUT_TIME, ask
 from symflex.data.measurement.measured_response import (
     MAX_LINES,
     MeasuredResponse,

@@ -29,8 +29,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from symflex.data.measurement.columns import minimum_phase
 from symflex.data.measurement.measured_response import MeasuredResponse, window_of
+from symflex.data.measurement.minimum_phase import minimum_phase
 from symflex.errors import DataError, Diagnostic, refused
 
 if TYPE_CHECKING:

@@ -25,7 +25,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symflex.data.measurement.arrays import Arrays, arrays_in, format_of, largest_matrix
-from symflex.data.measurement.columns import meaning_of
+from symflex.data.measurement.column_meaning import meaning_of
 from symflex.data.measurement.input_signal import ARRAYS, SECONDS, TIME, InputSignal, named_time
 from symflex.data.measurement.measured_response import MAX_LINES, are_few, listed_names
 from symflex.data.measurement.text_table import COMMENTS, TextTable, bare, cut, number

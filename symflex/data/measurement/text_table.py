@@ -1,7 +1,7 @@
 """Tables of numbers in text that instruments and programs write: encoding, delimiter, decimal sign, blocks.
 
     Analyser 3000;V1.2              text above
-    Frequency;Real;Imag.            text above, of which columns.py finds the names
+    Frequency;Real;Imag.            text above, of which column_meaning.py reads the names
     1,0E+00;2,5E-04;-9,0E-07        a block of two rows: delimiter ";", decimal comma
     2,0E+00;2,6E-04;-8,8E-07
 

@@ -16,7 +16,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from symflex.data.measurement.columns import ColumnMeaning, DataColumn, assembled
+from symflex.data.measurement.column_meaning import ColumnMeaning, DataColumn
+from symflex.data.measurement.columns import assembled
 from symflex.data.measurement.measured_response import (
     MAX_LINES,
     MAX_RESPONSES,
