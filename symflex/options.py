@@ -493,7 +493,7 @@ class PlotOptions:
     resolve: Stated = option("1 %", "--resolve", metavar="SHARE", **SHOWN, help="As for symflex stability.")
     box: bool = option(False, "--box", help="Draw the largest box about the values with the same count.")
     modes: int | None = option(None, "--modes", least=1, help="Show the N lowest modes.")
-    output: str | None = file_option("File to write: .pdf, .pgf, .svg or .png; .gif of modes.")
+    output: str | None = file_option("File to write: .pdf, .pgf, .svg or .png; .gif of shapes.")
     width: float | str | None = option(None, "--width", **WIDTH)
     font: str | None = option(None, "--font", **FONT)
     until: str | None = option(
@@ -506,6 +506,9 @@ class PlotOptions:
     )
     verdict: bool = option(False, "--verdict", help="Write above the figure whether it is stable.")
     spread: Stated | None = option(None, "--spread", **SPREAD)
+    at: Sequence[Stated] = option(
+        (), "--at", multiple=True, metavar="F", help="Frequency of a deflection: 30Hz; may be repeated."
+    )
 
     @property
     def stability(self) -> StabilityOptions:

@@ -27,7 +27,7 @@ from symflex.budget import Silent
 from symflex.drawing import draw_model
 from symflex.errors import SymflexError, Text
 from symflex.expressions import parse, parse_equation
-from symflex.figures import draw, draw_loop, render
+from symflex.figures import draw, render
 from symflex.library.elements import ELEMENTS
 from symflex.live.page import live_page
 from symflex.loops.of_model import characteristic_loop
@@ -241,7 +241,7 @@ def _figures(
         "bode": lambda: draw("bode", bounds),
     }
     if is_loop:
-        kinds["map"] = lambda: draw_loop("locus", characteristic_loop(model, GAIN))
+        kinds["map"] = lambda: draw("locus", characteristic_loop(model, GAIN))
     for name, drawing in kinds.items():
         try:
             yield name, render(drawing(), "svg")

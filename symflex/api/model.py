@@ -594,21 +594,8 @@ class Model:
         >>> figure.axes[0].get_ylim() == (-4, 4), figure.axes[0].get_xlabel()
         (True, '$\\mathrm{Re}(s)$ [rad/s]')
         """
-        given = PlotOptions(
-            "locus",
-            (),
-            gain,
-            band,
-            xlim,
-            ylim,
-            None,
-            limits,
-            modes=modes,
-            width=width,
-            font=font,
-            verdict=verdict,
-        )
-        return plot_loop(given, self.resolved, values, ax)
+        given = PlotOptions("locus", (), gain, band, xlim, ylim, None, limits, modes=modes, verdict=verdict)
+        return plot_loop(replace(given, width=width, font=font), self.resolved, values, ax)
 
     def nyquist(
         self,

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from fractions import Fraction
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from symflex.model import Model
-from symflex.options import Ends, PlotOptions, gain_ends
+from symflex.options import Ends, PlotOptions, Stated, gain_ends
 from symflex.print.latex import width_of
 from symflex.transfer import AnyBoundFunction, Given
 
@@ -15,27 +17,24 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from symflex.figures import AxesGiven
+    from symflex.loops import AnyLoop
 
 
 def plot_functions(
-    given: PlotOptions, bounds: Sequence[AnyBoundFunction], ax: AxesGiven | None = None
+    given: PlotOptions,
+    drawn: Sequence[AnyBoundFunction] | AnyLoop,
+    ax: AxesGiven | None = None,
+    limits: tuple[Fraction | None, Fraction | None] | None = None,
 ) -> Figure:
-    """Draw a figure of transfer functions; see :func:`symflex.figures.draw`."""
+    """Draw a figure of transfer functions, or of a loop; see :func:`symflex.figures.draw`."""
     from symflex.figures import DEFAULT_FONT, draw, part_shown  # imports matplotlib
 
-    if given.modes is not None:
-        bounds = [_with_modes(bound, given.modes) for bound in bounds]
+    if given.modes is not None and isinstance(drawn, Sequence):
+        drawn = [_with_modes(bound, given.modes) for bound in drawn]
     band, frame = part_shown(given.kind, given)
-    return draw(
-        given.kind,
-        bounds,
-        band_hz=band,
-        frame=frame,
-        width_mm=width_of(given.width),
-        font=given.font or DEFAULT_FONT,
-        ax=ax,
-        spread=given.spread,
-    )
+    shown = partial(draw, given.kind, drawn, band_hz=band, frame=frame, spread=given.spread, ax=ax)
+    width, font = width_of(given.width), given.font or DEFAULT_FONT
+    return shown(limits=limits, modes=given.modes, width_mm=width, font=font)
 
 
 def _with_modes(bound: AnyBoundFunction, modes: int) -> AnyBoundFunction:
@@ -204,24 +203,36 @@ class Plotted:
         given = PlotOptions("nichols", band=band, xlim=xlim, ylim=ylim, width=width, font=font)
         return plot_functions(given, [self.bound, *(other.bound for other in others)], ax)
 
+    def deflection_plot(
+        self,
+        *at: Stated,
+        width: float | str | None = None,
+        font: str | None = None,
+        ax: AxesGiven | None = None,
+    ) -> Figure:
+        r"""Return how the model moves under this input at frequencies [Hz], as mode shapes are drawn.
+
+        Raises SF406 at a resonance without damping, where the motion is infinite.
+
+        Examples
+        --------
+        >>> from symflex import Model
+        >>> body = {"type": "mass", "at": "x", "m": 2}
+        >>> hook = {"type": "spring", "between": ["x", "ground"], "k": 8}
+        >>> model = Model(elements={"m": body, "k": hook}, inputs={"F": {"force": "x"}}, outputs={"X": "x"})
+        >>> figure = model.transfer_function("X", "F").bind().deflection_plot("1 rad/s", "4 rad/s")
+        >>> print(figure.axes[1].get_title(loc="left"))
+        $0.6366$ Hz, largest $0.0417$ $\mathrm{m/N}$, $180$° from $F$
+        """
+        given = PlotOptions("deflection", width=width, font=font, at=at)
+        return plot_functions(given, [self.bound], ax)
+
 
 def plot_loop(
     given: PlotOptions, model: Model, values: Mapping[str, Given], ax: AxesGiven | None = None
 ) -> Figure:
-    """Draw a root locus or the Nyquist plot of a loop gain; see :func:`symflex.figures.draw_loop`."""
-    from symflex.figures import DEFAULT_FONT, draw_loop, part_shown  # imports matplotlib
+    """Draw a root locus or the Nyquist plot of a loop gain; see :func:`symflex.figures.draw`."""
     from symflex.loops.of_model import characteristic_loop
 
     loop = characteristic_loop(model, given.gain or "", values)
-    band, frame = part_shown(given.kind, given)
-    return draw_loop(
-        given.kind,
-        loop,
-        limits=gain_ends(given.limits, loop.gain),
-        modes=given.modes,
-        band_hz=band,
-        frame=frame,
-        width_mm=width_of(given.width),
-        font=given.font or DEFAULT_FONT,
-        ax=ax,
-    )
+    return plot_functions(given, loop, ax, gain_ends(given.limits, loop.gain))

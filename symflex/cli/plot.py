@@ -52,7 +52,8 @@ def draw(spec: Specification, given: DrawOptions) -> int:
 def plot(spec: Specification, given: PlotOptions) -> int:
     """Draw KIND, or a figure that SPEC defines in [figures].
 
-    Kinds are bode, impulse, locus, modes, nichols, nyquist, poles_zeros, sensitivity, stability and step.
+    Kinds are bode, deflection, impulse, locus, modes, nichols, nyquist, poles_zeros, sensitivity, stability
+    and step.
 
     modes draws the lowest mode shapes: as many as --modes gives, else [analysis] modes, else five. locus
     --gain K draws the paths of the closed-loop poles as K grows, from certified poles to certified zeros; for
@@ -75,14 +76,17 @@ def plot(spec: Specification, given: PlotOptions) -> int:
 
     Without -o, the figure is written to the current folder as SPEC_KIND.pdf.
 
-    modes -o FILE.gif writes an animation that repeats one period of every shape.
+    deflection --at 30Hz draws how everything moves at that frequency under the inputs, or those of --tf,
+    divided by the largest displacement, whose size and phase are printed.
+
+    modes and deflection -o FILE.gif write an animation that repeats one period of every shape.
 
     Use .pgf for papers set with LaTeX: load the package pgf and input the file. Its text appears in the
     paper's font, and --font (latex by default) only sets how much space it gets. You need no LaTeX to write
     it.
     """
     from symflex import pipeline
-    from symflex.figures import FIGURES, LOOP_FIGURES, checked_font, draw, draw_loop, part_shown, save
+    from symflex.figures import FIGURES, LOOP_FIGURES, checked_font, draw, part_shown, save
     from symflex.loops import pick_gain
     from symflex.loops.of_model import characteristic_loop
     from symflex.print.latex import width_of
@@ -119,20 +123,12 @@ def plot(spec: Specification, given: PlotOptions) -> int:
         hint = "name its gain: --gain K, or gain in [figures]"
         raise refused(f"a figure of kind '{drawn}' needs the gain of a loop", hint)
     title = figure.title or None if figure else None
+    frame = replace(frame, at=frame.at or (figure.at if figure else ()))
+    look = partial(draw, drawn, band_hz=shown, frame=frame, title=title, width_mm=width_mm, font=font)
     if gain:
         limits = gain_ends(given.limits, pick_gain(model.parameters, gain))
         limits = limits or (figure.limits if figure else None)
-        drawing = draw_loop(
-            drawn,
-            characteristic_loop(model, gain),
-            limits=limits,
-            modes=given.modes,
-            band_hz=shown,
-            frame=frame,
-            title=title,
-            width_mm=width_mm,
-            font=font,
-        )
+        drawing = look(characteristic_loop(model, gain), limits=limits, modes=given.modes)
     else:
         pairs = figure.of if figure and figure.of and not given.tfs else pipeline.pick_pairs(model, given.tfs)
         if drawn == "modes":
@@ -140,8 +136,7 @@ def plot(spec: Specification, given: PlotOptions) -> int:
         bounds = pipeline.derive_for_roots(model, pairs)
         if not given.tfs and not figure:
             bounds = _without_zeros(bounds)
-        look = partial(draw, band_hz=shown, frame=frame, title=title, width_mm=width_mm, font=font)
-        drawing = look(drawn, bounds, spread=given.spread, model=model)
+        drawing = look(bounds, spread=given.spread, model=model)
     save(drawing, path, font=font)
     note(f"wrote {path}")
     return 0

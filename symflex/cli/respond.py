@@ -112,7 +112,10 @@ def show_response(spec: Specification, given: RespondOptions) -> int:
         _write(response, given, Path(given.output))
     else:
         is_step = given.to == "step" and not (signal or shaper or free) and response.certified
-        rests = is_step and _may_rest(roots)
+        # Where a pole that is known keeps the response from rest, the others are not needed.
+        rests = is_step and not any(
+            p.on_imaginary_axis or p.re > 0 for p in (roots.all_poles if roots else ()) if not p.is_zero
+        )
         info = find_step_info(bound, given.digits, response.modes) if rests else None
         if given.as_json:
             emit_json(
@@ -150,12 +153,6 @@ def _growth(known: PoleZeroMap | None) -> list[str]:
     if known is None or not any(root.re > 0 for root in known.all_poles):
         return []
     return [f"the response grows without bound; the system is {known.verdict.sentence}"]
-
-
-def _may_rest(known: PoleZeroMap | None) -> bool:
-    """Tell whether no pole that is known keeps a step response from rest: the others are not needed then."""
-    poles = () if known is None else known.all_poles
-    return not any(not p.is_zero and (p.on_imaginary_axis or p.re > 0) for p in poles)
 
 
 def _check_options(given: RespondOptions, *, is_file: bool) -> None:

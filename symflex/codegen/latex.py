@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from symflex.budget import spend
 from symflex.codegen.export import Export
@@ -66,7 +67,7 @@ class LatexExporter:
         bounds = [bound for bound in map(_bound, tfs) if bound is not None and not bound.is_zero]
         pictures: list[Picture] = []
         warnings: list[str] = []
-        titles = {**DEFAULT_FIGURES, **LOOP_TITLES}
+        titles = {**DEFAULT_FIGURES, **LOOP_TITLES, "deflection": "Deflection shapes"}
         for figure in model.figures:
             names = {"/".join(pair) for pair in figure.of}
             if of := [bound for bound in bounds if not names or bound.name in names]:
@@ -87,18 +88,19 @@ class LatexExporter:
         title: str,
     ) -> None:
         """Draw one figure, without its title, which stands below it."""
-        from symflex.figures import LOOP_FIGURES, draw, draw_loop, render  # imports matplotlib
+        from symflex.figures import LOOP_FIGURES, AxisLimits, draw, render  # imports matplotlib
         from symflex.figures.files import MM_PER_INCH
         from symflex.loops.of_model import characteristic_loop
 
         name, kind = asked.name, asked.kind
         of = bounds[:1] if kind == "modes" else bounds  # all functions of a model have the same modes
+        look = partial(draw, kind, band_hz=asked.band, frame=AxisLimits(at=asked.at), font="latex")
         try:
             if asked.gain and kind in LOOP_FIGURES:
                 loop = characteristic_loop(of[0].source.model, asked.gain)
-                figure = draw_loop(kind, loop, band_hz=asked.band, width_mm=self.width_mm, font="latex")
+                figure = look(loop, width_mm=self.width_mm)
             else:
-                figure = draw(kind, of, band_hz=asked.band, width_mm=self.width_mm, font="latex")
+                figure = look(of, width_mm=self.width_mm)
         except SymflexError as error:
             spend()
             is_without_modes = kind == "modes" and error.diagnostics[0].code == "SF402"

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
         FIGURES,
         LOOP_FIGURES,
         draw,
-        draw_loop,
         draw_over,
         draw_shape,
         part_shown,
@@ -33,7 +32,7 @@ _HOME: Final = {
     "files": "FORMATS render save",
     "fitted": "draw_fit draw_measured draw_orders",
     "in_time": "draw_in_time draw_residual",
-    "kinds": "FIGURES LOOP_FIGURES draw draw_loop draw_over draw_shape part_shown picture_of_shape",
+    "kinds": "FIGURES LOOP_FIGURES draw draw_over draw_shape part_shown picture_of_shape",
     "style": "DEFAULT_FONT FONTS checked_font",
     "sweep": "draw_sweep",
 }  # modules of the public names, imported on first use: a drawing of a model takes a style and no roots

@@ -194,6 +194,7 @@ class AxisLimits:
     phase: Limits | None = None  # of a Bode plot [deg]
     has_asymptotes: bool = False  # of a Bode plot
     has_verdict: bool = field(default=False, compare=False)  # says whether what is drawn is stable
+    at: tuple[Fraction, ...] = field(default=(), compare=False)  # the frequencies of deflections [Hz]
 
     def __post_init__(self) -> None:
         for ends in (self.x, self.y, self.phase):

@@ -56,6 +56,7 @@ UNDAMPED: Final = 1e-4  # damping ratio below which a peak or trough has no end 
 UNDAMPED_REACH: Final = 0.01  # values this close to such a root, relatively, do not count for the limits
 ASYMPTOTE: Final = 0.4  # width [pt]; functions of finite order have asymptotes that hold on s = j omega
 UNDAMPED_MARGIN_DB: Final = 15.0  # room beyond the damped values where peaks are cut off
+GAPS: Final = "{}: {}; drawn from its values, because not all roots are known"
 
 
 def draw_bode(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
@@ -73,7 +74,8 @@ def draw_bode(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
     width = canvas.width or COLUMN_INCHES
     # Loss factors decide nothing about stability, and whoever gives them knows that.
     shaky = [m for m in maps if m.verdict.word in ("unstable", "unknown") and m.verdict != NO_STABILITY]
-    lines = [line for one in (canvas.title, *map(_said_of_grid, maps)) for line in title_lines(one, width)]
+    gaps = [GAPS.format(m.tf, m.certificate.reason) for m in maps if m.certificate.is_exceeded]
+    lines = [line for one in (canvas.title, *gaps) for line in title_lines(one, width)]
     said = stability_lines(shaky, width)
     units = list(dict.fromkeys(response.unit for response in responses))
     is_mixed = len(units) > 1
@@ -132,12 +134,6 @@ def set_frequency_axes(panels: Sequence[Axes], low: float, high: float) -> None:
         axes.set_xlabel("")
         axes.tick_params(labelbottom=False)
     root_figure(panels[0]).align_ylabels(panels)
-
-
-def _said_of_grid(found: PoleZeroMap) -> str:
-    """Return what a figure has to say where roots may be missing that its grid should know of."""
-    why = f"{found.tf}: {found.certificate.reason}; drawn from its values, because not all roots are known"
-    return why if found.certificate.is_exceeded else ""
 
 
 def draw_response(response: SampledResponse, ax: AxesGiven | None = None) -> Figure | None:

@@ -33,7 +33,7 @@ from symflex.errors.diagnostic import nearest
 from symflex.figures.style import DEFAULT_FONT, PRIMES, paper_style
 from symflex.files.write import write_atomically
 from symflex.print.label import read_label
-from symflex.print.latex.text import escape_text
+from symflex.print.latex.text import escape_text, prose
 
 # What would differ from run to run, or from one version of matplotlib to the next, is left out.
 FORMATS: Final[dict[str, dict[str, str | None]]] = {
@@ -65,7 +65,7 @@ _NAMESPACES: Final = re.compile(r'\sxmlns(?::\w+)?="[^"]*"')
 def render(figure: Figure, format: str, *, font: str = DEFAULT_FONT, has_text: bool = False) -> bytes:
     """Return a figure, drawn in ``font``, as the content of a file; equal figures give equal bytes.
 
-    In ``gif`` mode shapes move. With ``has_text`` an SVG holds texts, not outlines of letters. Raises SF208
+    In ``gif`` shapes move. With ``has_text`` an SVG holds texts, not outlines of letters. Raises SF208
     for any other format or font, SF902 for a GIF of what does not move.
     """
     if format not in FORMATS:
@@ -89,7 +89,7 @@ def _animation(figure: Figure) -> bytes:
     moving = getattr(figure, "moving", ())  # of a ShownFigure, which imports this file to save itself
     if not moving:
         hint = "formats of other figures: pdf, pgf, png, svg"
-        raise UsageError(Diagnostic("SF902", "only mode shapes move: no GIF of another figure", None, hint))
+        raise UsageError(Diagnostic("SF902", "only shapes move: no GIF of another figure", None, hint))
     canvas, dpi, pictures, buffer = FigureCanvasAgg(figure), figure.dpi, [], BytesIO()
     try:
         figure.dpi = FRAME_DOTS
@@ -151,7 +151,7 @@ def pgf_text(text: str, *, is_math: bool = True) -> str:
     parts = _DOLLAR.split(text) if is_math else [text]
     if len(parts) % 2 == 0:
         parts = [text]
-    return "".join(_mathematics(part) if i % 2 else _prose(part) for i, part in enumerate(parts))
+    return "".join(_mathematics(part) if i % 2 else prose(part) for i, part in enumerate(parts))
 
 
 def pgf_figure(figure: Figure) -> str:
@@ -180,12 +180,6 @@ def pgf_figure(figure: Figure) -> str:
             "",
         )
     )
-
-
-def _prose(text: str) -> str:
-    before = " " if text[:1].isspace() else ""
-    after = " " if text[-1:].isspace() and text.strip() else ""
-    return f"{before}{escape_text(text)}{after}"
 
 
 def _mathematics(latex: str) -> str:

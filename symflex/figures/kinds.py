@@ -15,11 +15,12 @@ from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.figures.axes import FREE, AxesGiven, AxisLimits, Canvas, Drawing, axes_of
 from symflex.figures.bode import draw_bode
+from symflex.figures.deflection import draw_deflections
 from symflex.figures.figure import Raster, raster_of
 from symflex.figures.files import MM_PER_INCH
 from symflex.figures.in_time import draw_responses
 from symflex.figures.loops import draw_locus, draw_loop_gain, draw_nyquist
-from symflex.figures.modes import draw_modes, draw_shapes
+from symflex.figures.modes import draw_modes, draw_shapes, heading
 from symflex.figures.nichols import draw_loop_phase, draw_nichols
 from symflex.figures.poles_zeros import draw_poles_zeros
 from symflex.figures.runs import panels_of
@@ -31,13 +32,14 @@ from symflex.loops.chart import StabilityChart
 from symflex.loops.clouds import root_clouds
 from symflex.loops.stability_map import StabilityMap
 from symflex.model import Model
-from symflex.options import PlotOptions, Stated, axis_ends, band_ends
+from symflex.options import PlotOptions, Stated, axis_ends, band_ends, frequency
 from symflex.print.latex import width_of
 from symflex.print.latex.page import checked_width
 from symflex.transfer import AnyBoundFunction
 
 FIGURES: dict[str, Drawing] = {
     "bode": draw_bode,
+    "deflection": draw_deflections,
     "impulse": partial(draw_responses, "impulse"),
     "modes": draw_modes,
     "nichols": draw_nichols,
@@ -51,13 +53,15 @@ LOOP_FIGURES: dict[str, Callable[[AnyLoop, Canvas], Figure]] = {
     "nichols": draw_loop_phase,
     "nyquist": draw_loop_gain,
     "sensitivity": draw_sensitivity,
-}  # kinds that are drawn of a loop and its gain, by :func:`draw_loop`
+}  # kinds that are drawn of a loop and its gain
 
 
 def draw(
     kind: str,
-    bounds: Sequence[AnyBoundFunction],
+    drawn: Sequence[AnyBoundFunction] | AnyLoop,
     *,
+    limits: tuple[Fraction | None, Fraction | None] | None = None,
+    modes: int | None = None,
     band_hz: tuple[float | Fraction, float | Fraction] | None = None,
     frame: AxisLimits = FREE,
     title: str | None = None,
@@ -67,31 +71,36 @@ def draw(
     spread: Stated | None = None,
     model: Model | None = None,
 ) -> Figure:
-    """Draw a figure of one or several transfer functions; ``kind`` is a key of :data:`FIGURES`.
+    """Draw a figure of transfer functions or of a loop; ``kind`` is a key of its table above.
 
     Without ``band_hz`` [Hz] each kind shows what lies in the model's band, or all that matters. ``frame``
     takes the place of limits that suit what is drawn; ``title`` is never read as mathematics. The figure is
     3.5 inches wide by default, or 7.16 for what needs the width of a page. On ``ax``, axes of the user's own,
-    it is drawn in the user's style. With ``spread`` a pole-zero plot shades where roots may lie. Raises
-    UsageError: SF208 an unknown kind or font, SF227 an empty band, SF902 a wrong size or number of axes;
-    ModelError: SF402 a function is identically zero.
+    it is drawn in the user's style. With ``spread`` a pole-zero plot shades where roots may lie. ``limits``
+    are the first and last gain of a locus, and ``modes`` those traced in one of a loop with kernels. Raises
+    UsageError: SF208 an unknown kind or font, SF227 an empty band, SF804 no range, SF806 no straight line in
+    the gain, SF902 a wrong size or number of axes; ModelError: SF402 a function is identically zero;
+    UncertifiedError: SF807 curves without certified ends.
     """
-    if kind not in FIGURES:
+    clouds = None if spread is None else partial(root_clouds, share=spread, model=model)
+    canvas = replace(_canvas(band_hz, frame, title, width_mm, ax), clouds=clouds, gains=limits, modes=modes)
+    known = FIGURES if isinstance(drawn, Sequence) else LOOP_FIGURES
+    if kind not in known:
         if kind in LOOP_FIGURES:
             message = f"a figure of kind '{kind}' needs a loop"
             hint = "name its gain: --gain K, or gain in [figures]"
             raise UsageError(Diagnostic("SF902", message, None, hint))
-        hint = nearest(kind, FIGURES) or "kinds: " + ", ".join(FIGURES)
+        hint = nearest(kind, known) or "kinds: " + ", ".join(known)
         raise UsageError(Diagnostic("SF208", f"there is no figure of kind '{kind[:64]}'", None, hint))
     _check_frame(kind, frame)
-    if not bounds:
+    if not isinstance(drawn, Sequence):
+        return _styled(font, canvas, lambda: LOOP_FIGURES[kind](drawn, canvas))
+    if not drawn:
         raise ValueError("a figure needs a transfer function")
-    for bound in bounds:
+    for bound in drawn:
         if bound.is_zero:
             raise ModelError(Diagnostic("SF402", f"{bound.name} is identically zero: nothing to draw"))
-    clouds = None if spread is None else partial(root_clouds, share=spread, model=model)
-    canvas = replace(_canvas(band_hz, frame, title, width_mm, ax), clouds=clouds)
-    return _styled(font, canvas, lambda: FIGURES[kind](bounds, canvas))
+    return _styled(font, canvas, lambda: FIGURES[kind](drawn, canvas))
 
 
 def draw_shape(
@@ -106,7 +115,7 @@ def draw_shape(
     canvas = _canvas(None, FREE, None, width_mm, ax)
     if not panels_of(model, [shape]):
         raise ModelError(Diagnostic("SF402", "nothing that moves in this mode could be drawn"))
-    return _styled(font, canvas, lambda: draw_shapes(model, [shape], canvas))
+    return _styled(font, canvas, lambda: draw_shapes(model, [shape], [heading(shape)], canvas))
 
 
 def picture_of_shape(model: Model, shape: EnclosedModeShape) -> Raster | None:
@@ -126,6 +135,8 @@ def part_shown(kind: str, given: PlotOptions) -> tuple[tuple[Fraction, Fraction]
         band, xlim = xlim, None
     if given.asymptotes and kind != "bode":
         raise UsageError(Diagnostic("SF902", f"--asymptotes is for bode, not for '{kind}'"))
+    if given.at and kind != "deflection":
+        raise UsageError(Diagnostic("SF902", f"--at is for deflection, not for '{kind}'"))
     if given.spread is not None and kind != "poles_zeros":
         raise UsageError(Diagnostic("SF902", f"--spread is for poles_zeros, not for '{kind}'"))
     is_plane = kind in ("locus", "poles_zeros")
@@ -135,6 +146,7 @@ def part_shown(kind: str, given: PlotOptions) -> tuple[tuple[Fraction, Fraction]
         axis_ends(given.phase, "--phase"),
         given.asymptotes,
         given.verdict,
+        tuple(frequency(each, "--at", "30 or '30 Hz'", is_hertz=True) for each in given.at),
     )
     is_logarithmic = kind in ("bode", "nichols", "nyquist", "sensitivity")  # without 0
     return None if band is None else band_ends(band, above_zero=is_logarithmic), frame
@@ -174,37 +186,8 @@ def _check_frame(kind: str, frame: AxisLimits) -> None:
         raise UsageError(Diagnostic("SF902", "limits of a phase are for 'bode'"))
     if frame.x and kind == "bode":
         raise UsageError(Diagnostic("SF902", "the frequencies of a Bode plot are its band"))
-    if frame != FREE and kind == "modes":
-        raise UsageError(Diagnostic("SF902", "mode shapes have no limits: their largest displacement is 1"))
-
-
-def draw_loop(
-    kind: str,
-    loop: AnyLoop,
-    *,
-    limits: tuple[Fraction | None, Fraction | None] | None = None,
-    modes: int | None = None,
-    band_hz: tuple[float | Fraction, float | Fraction] | None = None,
-    frame: AxisLimits = FREE,
-    title: str | None = None,
-    width_mm: float | None = None,
-    font: str = DEFAULT_FONT,
-    ax: AxesGiven | None = None,
-) -> Figure:
-    """Draw a root locus, or the loop gain ``K B/A`` or its sensitivities along the imaginary axis.
-
-    ``kind`` is a key of :data:`LOOP_FIGURES`; ``limits`` are the first and last gain of a locus, and
-    ``modes`` those traced in one of a loop with kernels. The rest is as for :func:`draw`. Raises UsageError:
-    SF208, SF804 no range, SF806 no straight line in the gain; UncertifiedError: SF807 curves without
-    certified ends.
-    """
-    if kind not in LOOP_FIGURES:
-        hint = "kinds: " + ", ".join(LOOP_FIGURES)
-        raise UsageError(Diagnostic("SF208", f"a loop has no figure of kind '{kind[:64]}'", None, hint))
-    _check_frame(kind, frame)
-    canvas = _canvas(band_hz, frame, title, width_mm, ax)
-    canvas = replace(canvas, gains=limits, modes=modes)
-    return _styled(font, canvas, lambda: LOOP_FIGURES[kind](loop, canvas))
+    if frame != FREE and kind in ("deflection", "modes"):
+        raise UsageError(Diagnostic("SF902", "shapes have no limits: their largest displacement is 1"))
 
 
 def draw_over(

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, MaxNLocator, NullFormatter
 
-from symflex.analysis.modes import DistributedShape, EnclosedModeShape, lowest_modes
+from symflex.analysis.modes import DistributedShape, EnclosedModeShape, EnclosedShape, lowest_modes
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.figures.axes import Canvas, root_figure
 from symflex.figures.figure import ShownFigure, new_figure
@@ -80,18 +80,23 @@ def draw_modes(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
         where = "" if band_hz is None else f" between {band_hz[0]:g} and {band_hz[1]:g} Hz"
         message = f"{bounds[0].name} has no mode other than at 0 that has a shape{where}"
         raise ModelError(Diagnostic("SF402", message))
-    return draw_shapes(model, shapes, canvas, verdict.headline if canvas.frame.has_verdict else None)
+    said = verdict.headline if canvas.frame.has_verdict else None
+    return draw_shapes(model, shapes, [heading(shape) for shape in shapes], canvas, said)
 
 
 def draw_shapes(
-    model: Model, shapes: Sequence[EnclosedModeShape], canvas: Canvas, said: str | None = None
+    model: Model,
+    shapes: Sequence[EnclosedShape],
+    headings: Sequence[str],
+    canvas: Canvas,
+    said: str | None = None,
 ) -> Figure:
     """Draw shapes of a model below each other, with what is ``said`` of it; see :func:`draw_modes`."""
     panels = panels_of(model, shapes)
     width = canvas.width or (COLUMN_INCHES if len(panels) <= PANELS_IN_COLUMN else PAGE_INCHES)
     titles = (title_lines(canvas.title, width), title_lines(said, width))
     lines = [line for group in titles for line in group]
-    per_metre = all(_unit_of_reference(shape) == "m" for shape in shapes)
+    per_metre = all(unit_of_reference(shape) == "m" for shape in shapes)
     names = {**UNIT_NAMES, "rad": "angle [rad/m]"} if per_metre else UNIT_NAMES
     labels = ["" if isinstance(panel, Plan) else names[_unit_of(panel)] for panel in panels]
     gaps = [LEFT, *(GAP if a == b else LABELLED_GAP for a, b in pairwise(labels))]
@@ -123,10 +128,10 @@ def draw_shapes(
             else:
                 parts = _draw_panel(axes, panel, shape)
                 _set_x_axis(axes, panel, room, is_last=i == len(shapes) - 1, is_named=runs > 1)
-            still = shape.pole.is_real
+            still = isinstance(shape, EnclosedModeShape) and shape.pole.is_real
             moving += [(artist, _stays if still and place else place) for artist, place in parts]
             if j == 0:
-                axes.set_title(heading(shape), loc="left", pad=2.5, fontsize=7.5)
+                axes.set_title(headings[i], loc="left", pad=2.5, fontsize=7.5)
             if own:
                 axes.set_ylabel(labels[j])
             left += room
@@ -174,7 +179,7 @@ def _widths(panels: Sequence[Panel], room: float) -> list[float]:
     return [s * shrink or (room - shrink * sum(stems)) / runs for s in stems]
 
 
-def _curves(panel: Run, shape: EnclosedModeShape) -> list[Curve]:
+def _curves(panel: Run, shape: EnclosedShape) -> list[Curve]:
     """Return the displacement along each part of a run."""
     curves = []
     for segment in panel.segments:
@@ -205,7 +210,7 @@ def _smooth(
     return share, CubicSpline(shares, moved, axis=1)(share)
 
 
-def _amplitudes(panel: Panel, shape: EnclosedModeShape) -> npt.NDArray[np.complex128]:
+def _amplitudes(panel: Panel, shape: EnclosedShape) -> npt.NDArray[np.complex128]:
     if isinstance(panel, Stems):
         return np.array([complex(shape.motion(name).value.mid()) for name in panel.names])
     if isinstance(panel, Plan):
@@ -213,7 +218,7 @@ def _amplitudes(panel: Panel, shape: EnclosedModeShape) -> npt.NDArray[np.comple
     return np.concatenate([values for _, values in _curves(panel, shape)])
 
 
-def _lags(panel: Panel, shape: EnclosedModeShape) -> bool:
+def _lags(panel: Panel, shape: EnclosedShape) -> bool:
     """Tell whether something in a panel is seen to move out of phase."""
     values = _amplitudes(panel, shape)
     largest = 1.0 if _is_normalised(panel, shape) else float(np.abs(values).max())
@@ -221,7 +226,7 @@ def _lags(panel: Panel, shape: EnclosedModeShape) -> bool:
 
 
 def _members(
-    panel: Plan, shape: EnclosedModeShape
+    panel: Plan, shape: EnclosedShape
 ) -> Iterator[tuple[npt.NDArray[np.float64], npt.NDArray[np.complex128]]]:
     """Yield points of every member where it rests, and by how much they move; a row for x and one for y."""
     for name, x, y in panel.members:
@@ -242,7 +247,7 @@ def _moving_line(axes: Axes, rest: Points, moved: Amplitudes, **style: Any) -> M
     return line, lambda turn: line.set_data(*(rest + (turn * moved).real))
 
 
-def _draw_plan(axes: Axes, panel: Plan, shape: EnclosedModeShape) -> list[Moving]:
+def _draw_plan(axes: Axes, panel: Plan, shape: EnclosedShape) -> list[Moving]:
     moving: list[Moving] = []
     members = list(_members(panel, shape))
     rest = np.concatenate([place for place, _ in members], axis=1)
@@ -258,7 +263,8 @@ def _draw_plan(axes: Axes, panel: Plan, shape: EnclosedModeShape) -> list[Moving
             moving.append((lagging, None))
         style = {"color": COLOURS[0], "zorder": 3, "solid_capstyle": "round"}
         moving.append(_moving_line(axes, place, scale * moved, **style))
-        axes.update_datalim((place - scale * moved.real).T)  # the other half of the swing
+        swing = scale * np.abs(moved)
+        axes.update_datalim(np.concatenate([place - swing, place + swing], axis=1).T)
     for node, x, y in panel.loaded:
         swings = [[complex(shape.motion(f"{node}.{c}").value.mid())] for c in ("x", "y")]
         moving.append(_draw_inertia(axes, x, y, np.array(swings) * complex(scale)))
@@ -268,7 +274,7 @@ def _draw_plan(axes: Axes, panel: Plan, shape: EnclosedModeShape) -> list[Moving
     return moving
 
 
-def _draw_panel(axes: Axes, panel: Panel, shape: EnclosedModeShape) -> list[Moving]:
+def _draw_panel(axes: Axes, panel: Panel, shape: EnclosedShape) -> list[Moving]:
     axes.axhline(0, color=QUIET, linewidth=0.5, zorder=1)
     values, is_lagging = _amplitudes(panel, shape), _lags(panel, shape)
     if isinstance(panel, Run):
@@ -288,9 +294,9 @@ def _draw_panel(axes: Axes, panel: Panel, shape: EnclosedModeShape) -> list[Movi
     return moving
 
 
-def _is_normalised(panel: Panel, shape: EnclosedModeShape) -> bool:
+def _is_normalised(panel: Panel, shape: EnclosedShape) -> bool:
     """Tell whether the panel's unit is that of the largest displacement, which is 1."""
-    return _unit_of(panel) in ("m", _unit_of_reference(shape))
+    return _unit_of(panel) in ("m", unit_of_reference(shape))
 
 
 def _unit_of(panel: Panel) -> str:
@@ -299,7 +305,8 @@ def _unit_of(panel: Panel) -> str:
     return "rad" if isinstance(panel, Run) and panel.is_turning else "m"
 
 
-def _unit_of_reference(shape: EnclosedModeShape) -> str:
+def unit_of_reference(shape: EnclosedShape) -> str:
+    """Return the SI unit of the largest displacement."""
     owner = shape.reference.partition("(")[0].partition(".")[0] if shape.reference.endswith(")") else ""
     part = next((p for p in shape.distributed if p.name == owner), None)
     if part is not None:
@@ -307,7 +314,7 @@ def _unit_of_reference(shape: EnclosedModeShape) -> str:
     return shape.motion(shape.reference).unit
 
 
-def _draw_run(axes: Axes, panel: Run, shape: EnclosedModeShape, *, is_lagging: bool) -> list[Moving]:
+def _draw_run(axes: Axes, panel: Run, shape: EnclosedShape, *, is_lagging: bool) -> list[Moving]:
     moving: list[Moving] = []
     for joint in panel.ends[1:-1]:
         axes.axvline(joint, color=FAINT, linewidth=0.6, zorder=0)

@@ -11,7 +11,7 @@ from symflex.expressions import Name
 from symflex.library.elements import LineElement
 
 if TYPE_CHECKING:
-    from symflex.analysis.modes import DistributedShape, EnclosedModeShape
+    from symflex.analysis.modes import DistributedShape, EnclosedShape
     from symflex.model import Model, PlacedElement
 
 Vector = tuple[float, float]
@@ -58,7 +58,7 @@ class Plan:
 Panel = Run | Plan | Stems
 
 
-def panels_of(model: Model, shapes: Sequence[EnclosedModeShape]) -> tuple[Panel, ...]:
+def panels_of(model: Model, shapes: Sequence[EnclosedShape]) -> tuple[Panel, ...]:
     """Return what a figure of the modes shows; voltages and signals when nothing else moves."""
     if not shapes:
         return ()

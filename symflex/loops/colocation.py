@@ -180,10 +180,7 @@ def _state(ratio: Callable[[acb], acb], phase: float, magnitude: float, omega: a
     size, most = abs(value), arb(10) ** (arb(magnitude) / 20)
     # Within the sector: abs(Im) <= tan(phase) Re.
     limit = (arb.pi() * arb(phase) / 180).tan()
-    slacks = {
-        "magnitude": (most - size).min(size - 1 / most),
-        "phase": limit * value.real - abs(value.imag),
-    }
+    slacks = {"magnitude": (most - size).min(size - 1 / most), "phase": limit * value.real - abs(value.imag)}
     if all(slack > 0 for slack in slacks.values()):
         return 1, ""
     outside = next((name for name, slack in slacks.items() if slack < 0), "")

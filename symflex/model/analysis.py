@@ -30,7 +30,7 @@ from symflex.expressions import (
 from symflex.model.model import PI_NEARLY, TRANSFORMER_SYMBOLS, Analysis, DrawingHints, Figure, Published
 from symflex.model.scope import COMPARED_NAMES, LISTED_NAMES, RESERVED
 from symflex.model.signs import Line
-from symflex.model.spec import BooleanValue, KeyValue, NumberValue, TableValue, Value
+from symflex.model.spec import ArrayValue, BooleanValue, KeyValue, NumberValue, TableValue, Value
 from symflex.quantities import IMAGINARY_NAMES, Quantity, unit_of
 
 if TYPE_CHECKING:
@@ -38,9 +38,9 @@ if TYPE_CHECKING:
     from symflex.model.reading import Reader
 
 ANALYSIS_KEYS = ("band", "data_end", "modes", "digits", "print", "prefer")
-FIGURE_KEYS = ("kind", "of", "gain", "over", "range", "band", "until", "data", "title", "doc")
+FIGURE_KEYS = ("kind", "of", "gain", "over", "range", "band", "until", "at", "data", "title", "doc")
 OF_A_LOOP = ("nyquist", "nichols", "sensitivity", "locus")
-FIGURE_KINDS = ("bode", "poles_zeros", *OF_A_LOOP, "stability", "modes", "step", "impulse")
+FIGURE_KINDS = ("bode", "poles_zeros", *OF_A_LOOP, "stability", "modes", "deflection", "step", "impulse")
 IN_TIME = ("step", "impulse")
 MODES_LIMIT = 1_000_000
 DIGITS_LIMIT = 10_000
@@ -160,8 +160,9 @@ def read_figures(reader: Reader, section: TableValue | None, model: Model) -> tu
         over = _over(reader, table, kind, entry, [p.name for p in model.parameters])
         until = _until(reader, table, kind, what)
         ends = _range(reader, table, kind, what, next((p for p in model.parameters if p.name == gain), None))
+        more = ends, over, _at(reader, table, kind, entry)
         figures.append(
-            Figure(entry.key, kind, chosen, title, gain, entry.key_span, has_data, band, until, ends, over)
+            Figure(entry.key, kind, chosen, title, gain, entry.key_span, has_data, band, until, *more)
         )
     return tuple(figures)
 
@@ -266,6 +267,22 @@ def _over(
     if not 1 <= len(texts) <= 2:  # noqa: PLR2004
         reader.note("SF208", "stability is drawn over one parameter, or over two", entry.key_span, example)
     return tuple(t.value for t in texts if _check_among(reader, t, parameters, "parameter"))
+
+
+def _at(reader: Reader, table: TableValue, kind: str, figure: KeyValue) -> tuple[Fraction, ...]:
+    """Return the frequencies of a figure of deflections [Hz]."""
+    entry, example = table.get("at"), 'for instance at = "30 Hz"'
+    if (entry is None) == (kind == "deflection"):
+        code, is_or = ("SF214", "needs") if entry is None else ("SF207", "does not take")
+        span = figure.key_span if entry is None else entry.key_span
+        reader.note(code, f"figure '{figure.key}' of kind '{kind}' {is_or} 'at'", span, example)
+    if entry is None:
+        return ()
+    items = entry.value.items if isinstance(entry.value, ArrayValue) else (entry.value,)
+    numbers = [(item, _frequency(reader, item)) for item in items]
+    for item in (item for item, number in numbers if number is not None and number < 0):
+        reader.note("SF227", "a frequency is not negative", item.span, example)
+    return tuple(number for _, number in numbers if number is not None)
 
 
 def _range(

@@ -42,13 +42,7 @@ from symflex.model.declarations import in_order
 from symflex.model.fields import name_problem, parsed
 from symflex.model.model import NodeReference, OperatingPoint, Signal
 from symflex.model.network import Draft, DraftElement
-from symflex.model.operating_point import (
-    NOWHERE,
-    SMOOTH,
-    in_s,
-    linearised,
-    read_operating_point,
-)
+from symflex.model.operating_point import NOWHERE, SMOOTH, in_s, linearised, read_operating_point
 from symflex.model.reading import QuantityLiteral, Reader
 from symflex.model.spec import TableValue
 from symflex.model.units import lower

@@ -35,7 +35,7 @@ WITH_ROOTS = (
     "a step response",
 )
 """What is available with roots of s."""
-WITH_LOSSES = ("a sensitivity", "a mode shape", "an explanation of zeros")
+WITH_LOSSES = ("a sensitivity", "a mode shape", "a deflection", "an explanation of zeros")
 """What is available with loss factors and complex coefficients, as it asks the equations at a root alone."""
 LOSSY = ("k", "E", "G", "EI", "EA", "GJ", "kappaGA")  # values of elements that their loss factor multiplies
 

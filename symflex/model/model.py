@@ -291,6 +291,7 @@ class Figure:
     until: Fraction | None = None
     limits: tuple[Fraction, Fraction] | None = None
     over: tuple[str, ...] = ()  # the parameters of a figure of stability
+    at: tuple[Fraction, ...] = ()  # the frequencies of deflections [Hz]
 
 
 TRANSFORMER_SYMBOLS: Final = ("gears", "belt", "screw", "rack", "lever", "coils", "box")

@@ -276,6 +276,7 @@ def _figure() -> Schema:
         "range": _said(RANGE, "first and last gain of a locus"),
         "band": _said(RANGE, "frequencies shown [Hz]"),
         "until": _said(VALUE, "last time shown [s]"),
+        "at": _said({"anyOf": [VALUE, {"type": "array", "items": VALUE}]}, "frequencies of deflections [Hz]"),
         "data": {"type": "boolean", "description": "whether measured data are drawn under it"},
         "title": TEXT,
         "doc": TEXT,

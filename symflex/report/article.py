@@ -12,7 +12,7 @@ from typing import Final, assert_never
 
 from symflex.print.latex import TEXT_WIDTH_MM, escape_text
 from symflex.print.latex.page import preamble
-from symflex.print.latex.text import text_width
+from symflex.print.latex.text import prose, text_width
 from symflex.print.width import EM_MM
 from symflex.report.document import (
     Aside,
@@ -223,7 +223,7 @@ def _runs(runs: Sequence[Run] | Iterable[Run]) -> str:
 def _run(run: Run) -> str:
     match run:
         case str():
-            return r"\newline ".join(_with_ends(line) for line in run.split("\n"))
+            return r"\newline ".join(prose(line) for line in run.split("\n"))
         case Mathematics(latex=latex):
             return f"${latex}$"
         case Code(text=text):
@@ -237,13 +237,6 @@ def _run(run: Run) -> str:
             return shown if target.startswith("#") else rf"\texttt{{{shown}}}"
         case _:
             assert_never(run)
-
-
-def _with_ends(text: str) -> str:
-    """Return text with the space at its ends, which runs beside it need."""
-    before = " " if text[:1] == " " else ""
-    after = " " if text[-1:] == " " and text.strip() else ""
-    return f"{before}{escape_text(text)}{after}"
 
 
 def _breakable(text: str) -> str:

@@ -349,15 +349,9 @@ def _number(value: arb | None, unit: float = 1.0) -> float | None:
 
 
 def _colocation(colocation: DynamicColocation) -> ColocationFact:
+    limits = colocation.phase, colocation.magnitude, _number(colocation.edge, tau), colocation.limits[1]
     return ColocationFact(
-        tf=colocation.tf,
-        reference=colocation.reference,
-        phase_degrees=colocation.phase,
-        magnitude_db=colocation.magnitude,
-        bandwidth_hz=_number(colocation.edge, tau),
-        examined_hz=colocation.limits[1],
-        is_together=colocation.begins,
-        certified=colocation.is_decided,
+        colocation.tf, colocation.reference, *limits, colocation.begins, colocation.is_decided
     )
 
 

@@ -14,11 +14,17 @@ from random import Random
 from flint import acb, acb_mat, arb, arb_mat
 
 from symflex.algebra import LAPLACE
-from symflex.analysis.modes.shape import DistributedShape, VaryingCarrier
+from symflex.analysis.modes.shape import DistributedShape, Motion, VaryingCarrier
 from symflex.balls import balancing, binary_exponent, current_bits
-from symflex.equations import Continuum
+from symflex.equations import Continuum, assemble
 from symflex.library.elements import Variable
-from symflex.transfer.equations_at import NamedValues
+from symflex.library.elements.element import ACROSS_UNIT, COMPONENT_DOMAIN, COMPONENT_UNIT
+from symflex.model import with_numbers
+from symflex.model.along import is_tapered
+from symflex.model.loss_factors import check_causal
+from symflex.transfer import AnyBoundFunction, nested_transfer
+from symflex.transfer.bind import read_values
+from symflex.transfer.equations_at import EquationsAt, NamedValues
 
 SEED = 7
 PASSES = 2  # passes of scaling rows and columns: units make entries differ by many powers of ten
@@ -51,7 +57,7 @@ def null_space(matrix: acb_mat, dimension: int = 1, typical: acb_mat | None = No
     if not n:
         return NullSpace((), True)
     bordered, right = _bordered(matrix, dimension, typical)
-    solved = _solve(bordered, _corner(n, dimension))
+    solved = solution(bordered, _corner(n, dimension))
     if solved is None:
         return None
     basis = tuple(tuple(solved[j][k] * right[j] for j in range(n)) for k in range(dimension))
@@ -85,9 +91,9 @@ def singular_pair(matrix: acb_mat, typical: acb_mat) -> SingularPair | None:
     """
     n = int(matrix.nrows())
     bordered, right = _bordered(matrix, 1, typical)
-    solved = _solve(bordered, _corner(n, 1))
+    solved = solution(bordered, _corner(n, 1))
     transposed = [list(column) for column in zip(*bordered, strict=True)]
-    mirrored = None if solved is None else _solve(transposed, _corner(n, 1))
+    mirrored = None if solved is None else solution(transposed, _corner(n, 1))
     if solved is None or mirrored is None:
         return None
     left, _ = _scales(typical.tolist())
@@ -120,8 +126,8 @@ def _border(random: Random, dimension: int) -> list[acb]:
     return [acb(random.choice((-1, 1)) * random.uniform(0.5, 1)) for _ in range(dimension)]
 
 
-def _solve(matrix: list[list[acb]], wanted: list[list[acb]]) -> list[list[acb]] | None:
-    """Return ``matrix^-1 wanted``, in real arithmetic where all is real."""
+def solution(matrix: list[list[acb]], wanted: list[list[acb]]) -> list[list[acb]] | None:
+    """Return ``matrix^-1 wanted``, in real arithmetic where all is real; None where it may be singular."""
     try:
         if all(x.imag == 0 for row in matrix for x in row):
             real = arb_mat([[x.real for x in row] for row in matrix])
@@ -142,10 +148,44 @@ def _scales(rows: Sequence[Sequence[acb]]) -> tuple[list[arb], list[arb]]:
     return [two**e for e in left], [two**e for e in right]
 
 
+class BoundEquations:
+    """The equations behind a bound function, with numbers, and what everything does that solves them."""
+
+    def __init__(self, bound: AnyBoundFunction, what: str) -> None:
+        model = bound.source.model
+        check_causal(model, what)
+        of_nested = None if bound.is_reduced else bound.source.equations
+        given = dict(bound.values)
+        if of_nested is None and is_tapered(model):
+            # Bounds on a coefficient in names are wide: a member is taken in ten times as many steps.
+            model = with_numbers(model, (), given, in_kernels=True)
+        equations = of_nested or assemble(model, nested_transfer, is_nameless=True)
+        missing = tuple(p for p in model.parameters if p.name not in given)
+        self.at = EquationsAt(equations, (*bound.values, *read_values(missing, {})))
+        domains = {n.name: n.domain for n in model.nodes}
+        self.unknowns = equations.unknowns
+        self.units = {v: _unit(v, domains.get(v.owner, "")) for v in equations.unknowns}
+
+    def motion(
+        self, number: NamedValues, values: Sequence[acb], source: Variable | None = None
+    ) -> tuple[tuple[Motion, ...], tuple[DistributedShape, ...]]:
+        """Return what moves with these values of the unknowns; a ``source`` is 1, other inputs are 0."""
+        moved = dict(zip(self.unknowns, values, strict=True))
+        every = moved if source is None else {**moved, source: acb(1)}
+        distributed = tuple(moving_continuum(part, number, every) for part in self.at.equations.continua)
+        starts = {part.name: float(part.start.mid()) for part in distributed}
+        motions = tuple(
+            Motion(_name(variable, starts), variable, value, self.units.get(variable, ""))
+            for variable, value in every.items()
+            if variable.kind != "value"
+        )
+        return motions, distributed
+
+
 def moving_continuum(
     continuum: Continuum, number: NamedValues, motion: Mapping[Variable, acb]
 ) -> DistributedShape:
-    """Return how a distributed part moves when the unknowns have these values; inputs are at rest."""
+    """Return how a distributed part moves when these have these values, and all else is at rest."""
     system, axes = continuum.system, continuum.system.axes
     matrix: tuple[tuple[acb, ...], ...] = ()
     initial = tuple(acb(0) if v is None else motion[v] for v in continuum.initial)
@@ -161,16 +201,21 @@ def moving_continuum(
             [number(x) * size for x in column] for column, size in zip(system.loads, load, strict=True)
         ]
         load = tuple(sum(xs, acb(0)) for xs in zip(*columns, strict=True)) or (acb(0),) * len(system.states)
-    return DistributedShape(
-        continuum.name,
-        continuum.kind,
-        system.states,
-        matrix,
-        load,
-        initial,
-        number(continuum.start).real,
-        number(continuum.length).real,
-        current_bits(),
-        () if axes is None else tuple(number(x).real for x in (axes.cos, axes.sin)),
-        varying,
-    )
+    reach = number(continuum.start).real, number(continuum.length).real, current_bits()
+    direction = () if axes is None else tuple(number(x).real for x in (axes.cos, axes.sin))
+    moved = continuum.name, continuum.kind, system.states, matrix, load, initial
+    return DistributedShape(*moved, *reach, direction, varying)
+
+
+def _name(variable: Variable, starts: Mapping[str, float]) -> str:
+    if variable.kind == "field":
+        return f"{variable.component}({starts[variable.owner]:.6g})"
+    return str(variable)
+
+
+def _unit(variable: Variable, domain: str) -> str:
+    if variable.kind == "node":
+        return ACROSS_UNIT.get(COMPONENT_DOMAIN.get(variable.component, domain), "")
+    if variable.kind == "through":
+        return COMPONENT_UNIT.get(variable.component.removesuffix("_a"), "")
+    return ""

@@ -6,30 +6,24 @@ Input: :class:`symflex.transfer.BoundTransferFunction` and the number of a mode,
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 
 from flint import acb, acb_mat
 
-from symflex.analysis.modes.bound_equations import BESIDE, moving_continuum, null_space
-from symflex.analysis.modes.shape import EnclosedModeShape, Motion, normalised
+from symflex.analysis.modes.bound_equations import BESIDE, BoundEquations, null_space
+from symflex.analysis.modes.shape import EnclosedModeShape, is_accurate, normalised
 from symflex.balls import precision
 from symflex.budget import spend
-from symflex.equations import assemble
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError, UsageError
 from symflex.library.elements import Variable
-from symflex.library.elements.element import ACROSS_UNIT, COMPONENT_DOMAIN, COMPONENT_UNIT
-from symflex.model import with_numbers
-from symflex.model.along import is_tapered
-from symflex.model.loss_factors import check_causal
 from symflex.roots import Band, Modes, PoleZeroMap, Region, Root
 from symflex.roots.locate import locate
 from symflex.roots.pole_zero_map import StabilityVerdict
-from symflex.transfer import AnyBoundFunction, nested_transfer
-from symflex.transfer.bind import read_values
-from symflex.transfer.equations_at import EquationsAt, NamedValues
+from symflex.transfer import AnyBoundFunction
+from symflex.transfer.equations_at import NamedValues
 
 DIGITS = 15
 SPARE_DIGITS = 15
@@ -135,19 +129,7 @@ class _ModeSearch:
     def __init__(self, bound: AnyBoundFunction) -> None:
         self.bound = bound
         self._maps: dict[tuple[Region | None, int], PoleZeroMap] = {}
-        model = bound.source.model
-        check_causal(model, "a mode shape")
-        of_nested = None if bound.is_reduced else bound.source.equations
-        given = dict(bound.values)
-        if of_nested is None and is_tapered(model):
-            # Bounds on a coefficient in names are wide: a member is taken in ten times as many steps.
-            model = with_numbers(model, (), given, in_kernels=True)
-        equations = of_nested or assemble(model, nested_transfer, is_nameless=True)
-        missing = tuple(p for p in model.parameters if p.name not in given)
-        self.equations = EquationsAt(equations, (*bound.values, *read_values(missing, {})))
-        domains = {n.name: n.domain for n in model.nodes}
-        self._entries = self.equations.entries()
-        self._units = {v: _unit(v, domains.get(v.owner, "")) for v in equations.unknowns}
+        self.equations = BoundEquations(bound, "a mode shape")
 
     def map(self, region: Region | None, digits: int) -> PoleZeroMap:
         key = (region, digits)
@@ -212,7 +194,7 @@ class _ModeSearch:
                 raise
             enclosed = self._at(root, digits)
             best = enclosed or best
-            if enclosed and all(_is_accurate(shape, digits) for shape in enclosed):
+            if enclosed and all(is_accurate(shape, digits) for shape in enclosed):
                 break
             working *= 2
         if not best:
@@ -225,15 +207,15 @@ class _ModeSearch:
         bits = root.working_bits() + SPARE_BITS
         with precision(bits):
             s = acb(root.re, root.im)
-            number, unknowns = self.equations.on(s), self.equations.equations.unknowns
-            beside = self.equations.on(s.mid() * BESIDE if s.mid() != 0 else acb(1))
-            matrix, typical = (x.matrix(self._entries) for x in (number, beside))
+            at, unknowns = self.equations.at, self.equations.unknowns
+            number, beside = at.on(s), at.on(s.mid() * BESIDE if s.mid() != 0 else acb(1))
+            matrix, typical = (x.matrix(at.entries()) for x in (number, beside))
             for dimension in range(1, DIMENSIONS + 1):
                 space = null_space(matrix, dimension, typical)
                 if space is None:
                     continue
                 if not space.is_refuted:
-                    basis = _tidied(space.basis, unknowns, self._units)
+                    basis = _tidied(space.basis, unknowns, self.equations.units)
                     is_proved = dimension == 1 and root.certified
                     raw = [self._shape(root, number, values, is_proved) for values in basis]
                     scaled = [normalised(shape, digits) for shape in raw]
@@ -249,35 +231,13 @@ class _ModeSearch:
     def _shape(
         self, root: Root, number: NamedValues, values: Sequence[acb], is_proved: bool
     ) -> EnclosedModeShape:
-        equations = self.equations.equations
-        amplitudes = dict(zip(equations.unknowns, values, strict=True))
-        distributed = tuple(moving_continuum(part, number, amplitudes) for part in equations.continua)
-        starts = {part.name: float(part.start.mid()) for part in distributed}
-        motions = tuple(
-            Motion(_name(variable, starts), variable, value, self._units[variable])
-            for variable, value in amplitudes.items()
-            if variable.kind != "value"
-        )
-        return EnclosedModeShape(root, motions, distributed, "", is_proved)
+        motions, distributed = self.equations.motion(number, values)
+        return EnclosedModeShape(motions, distributed, "", root, is_proved)
 
 
 def _poles_of(located: PoleZeroMap) -> list[Root]:
     """Return all poles found, hidden ones among them."""
     return [*located.all_poles, *(h.root for h in located.hidden)]
-
-
-def _name(variable: Variable, starts: Mapping[str, float]) -> str:
-    if variable.kind == "field":
-        return f"{variable.component}({starts[variable.owner]:.6g})"
-    return str(variable)
-
-
-def _unit(variable: Variable, domain: str) -> str:
-    if variable.kind == "node":
-        return ACROSS_UNIT.get(COMPONENT_DOMAIN.get(variable.component, domain), "")
-    if variable.kind == "through":
-        return COMPONENT_UNIT.get(variable.component.removesuffix("_a"), "")
-    return ""
 
 
 def _distance(a: Root, b: Root) -> float:
@@ -333,23 +293,3 @@ def _independent(basis: tuple[tuple[acb, ...], ...], places: Sequence[int]) -> l
             share = sum(x * y.conjugate() for x, y in zip(row, pivot, strict=True)) / size
             rows[j] = [x - share * y for x, y in zip(row, pivot, strict=True)]
     return sorted(chosen)
-
-
-def _is_accurate(shape: EnclosedModeShape, digits: int) -> bool:
-    """Tell whether motions, also at the far ends of distributed parts, have the requested digits."""
-    groups: dict[tuple[str, str], list[acb]] = {}
-    for motion in shape.motions:
-        groups.setdefault((motion.unit, motion.variable.kind), []).append(motion.value)
-    for part in shape.distributed:
-        middle, end = (part.state_at_share(Fraction(1, n)) for n in (2, 1))
-        for name, *values in zip(part.states, part.initial, middle, end, strict=True):
-            groups.setdefault((part.name, name), []).extend(values)
-    sizes = [
-        (max(float(abs(v.mid())) for v in values), max(float(v.rad()) for v in values))
-        for values in groups.values()
-    ]
-    overall = max((largest for largest, radius in sizes if largest > radius), default=0.0)
-    # What vanishes altogether has no size of its own to be measured by.
-    return all(
-        radius <= 10.0**-digits * (largest if largest > radius else overall) for largest, radius in sizes
-    )

@@ -1,6 +1,6 @@
-"""A mode shape: what moves at a pole, how far, and with what bound.
+"""A shape: what moves at a pole, or in step with an input, how far, and with what bound.
 
-Amplitudes are found up to a factor and divided by the largest displacement.
+Amplitudes are divided by the largest displacement.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import ceil, log2, pi
+from typing import Self, TypeVar
 
 from flint import acb, acb_mat, arb, arb_mat
 
@@ -26,7 +27,7 @@ FEWEST_SAMPLES, MOST_SAMPLES = 32, 4096
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """What one unknown does in a mode."""
+    """What one unknown, or the input of a deflection, does."""
 
     name: str  # as an expression names it: ``x_tip``, ``p.theta``, ``motor.i``; ``w''(0)`` of a field
     variable: Variable  # the unknown
@@ -39,7 +40,7 @@ class VaryingCarrier:
     """What takes the state along a part whose coefficients vary along x."""
 
     parts: tuple[tuple[tuple[int, ...], BoundLaw], ...]  # states that are coupled, and their law
-    s: acb  # the pole
+    s: acb  # where the shape is [rad/s]
     size: int  # how many states there are
     # What was computed, by the exact places and the precision.
     _known: dict[tuple[object, ...], list[list[acb]]] = field(default_factory=dict, repr=False)
@@ -205,26 +206,17 @@ def _log2(value: acb) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class EnclosedModeShape:
-    """The motion of the model at one pole, up to a complex factor."""
+class EnclosedShape:
+    """How everything in a model moves at one s, up to a complex factor."""
 
-    pole: Root
     motions: tuple[Motion, ...]  # one for every unknown of the equations
     distributed: tuple[DistributedShape, ...]  # of every beam, rod, shaft, string and field
     reference: str  # what is 1: a node, or ``element(x)`` with the place; of a frame ``element.y(x)``
-    certified: bool  # the pole is certified, and has no other shape: balls contain true amplitudes
 
-    def __repr__(self) -> str:
-        return f"<EnclosedModeShape at {self.pole.frequency_hz():.6g} Hz, {self.reference} = 1>"
-
-    @property
-    def is_real(self) -> bool:
-        """True when all that moves does so in phase: the pole is undamped and no motion is proved complex."""
-        moving = [m.value for m in self.motions if m.unit in ("m", "rad")]
-        for part in self.distributed:
-            moving += [*part.initial, *part.load, *(x for row in part.matrix for x in row)]
-        moving = moving or [m.value for m in self.motions]
-        return self.pole.on_imaginary_axis and all(value.imag.contains(0) for value in moving)
+    def scaled(self, factor: acb) -> Self:
+        """Return the shape with all amplitudes times a number."""
+        motions = tuple(replace(m, value=m.value * factor) for m in self.motions)
+        return replace(self, motions=motions, distributed=tuple(p.scaled(factor) for p in self.distributed))
 
     def motion(self, name: str) -> Motion:
         """Return what a node, element quantity or signal does; SF902 when there is none of that name."""
@@ -245,6 +237,36 @@ class EnclosedModeShape:
             raise UsageError(Diagnostic("SF902", message, None, hint))
         return parts[name]
 
+
+@dataclass(frozen=True, slots=True)
+class EnclosedModeShape(EnclosedShape):
+    """The motion of a model at one pole."""
+
+    pole: Root
+    certified: bool  # the pole is certified, and has no other shape: balls contain true amplitudes
+
+    def __repr__(self) -> str:
+        return f"<EnclosedModeShape at {self.pole.frequency_hz():.6g} Hz, {self.reference} = 1>"
+
+    @property
+    def is_real(self) -> bool:
+        """True when all that moves does so in phase: the pole is undamped and no motion is proved complex."""
+        moving = [m.value for m in self.motions if m.unit in ("m", "rad")]
+        for part in self.distributed:
+            moving += [*part.initial, *part.load, *(x for row in part.matrix for x in row)]
+        moving = moving or [m.value for m in self.motions]
+        return self.pole.on_imaginary_axis and all(value.imag.contains(0) for value in moving)
+
+
+@dataclass(frozen=True, slots=True)
+class Deflection(EnclosedShape):
+    """The steady motion of a model under cos(omega t), the last of its motions, which is real."""
+
+    frequency_hz: Fraction
+    amplitude: acb  # of the reference, per unit of the input, enclosed
+
+
+Shape = TypeVar("Shape", bound=EnclosedShape)
 
 TURNING = ("shaft",)
 TIE = 1 + 1e-9  # a displacement must be larger by this factor to replace an earlier reference
@@ -269,7 +291,7 @@ class _PlacedAmplitude:
         return float(abs(self.value.mid()))
 
 
-def normalised(shape: EnclosedModeShape, digits: int) -> EnclosedModeShape | None:
+def normalised(shape: Shape, digits: int) -> Shape | None:
     """Return a shape whose largest displacement is 1, None when its balls do not tell which that is.
 
     Without displacements it is the largest angle, then voltage; 10^-digits of another motion is at rest.
@@ -286,7 +308,7 @@ def normalised(shape: EnclosedModeShape, digits: int) -> EnclosedModeShape | Non
     return None
 
 
-def _groups(shape: EnclosedModeShape) -> Iterator[Iterator[_PlacedAmplitude]]:
+def _groups(shape: EnclosedShape) -> Iterator[Iterator[_PlacedAmplitude]]:
     """Yield what competes for being the largest, the kind that matters most first."""
 
     def group(unit: str, chosen: Callable[[DistributedShape], bool]) -> Iterator[_PlacedAmplitude]:
@@ -300,7 +322,8 @@ def _groups(shape: EnclosedModeShape) -> Iterator[Iterator[_PlacedAmplitude]]:
     yield group("m", lambda part: part.kind not in TURNING)
     yield group("rad", lambda part: part.kind in TURNING)
     yield group("V", lambda part: False)
-    yield (_PlacedAmplitude(m.name, m.value) for m in shape.motions if m.variable.kind != "node")
+    others = [m for m in shape.motions if m.variable.kind not in ("node", "input")]
+    yield (_PlacedAmplitude(m.name, m.value) for m in others)
 
 
 def _along(part: DistributedShape) -> Iterator[_PlacedAmplitude]:
@@ -350,17 +373,36 @@ def _refined(place: _PlacedAmplitude) -> _PlacedAmplitude:
     return replace(place, share=share, value=value(share))
 
 
-def _scaled(shape: EnclosedModeShape, reference: _PlacedAmplitude) -> EnclosedModeShape:
+def _scaled(shape: Shape, reference: _PlacedAmplitude) -> Shape:
     part, name = reference.part, reference.name
     if part is not None:
         with precision(part.bits):
             x = part.start + part.length * reference.share.numerator / reference.share.denominator
         name = f"{name}({float(x.mid()):.6g})"
     with precision(max(64, reference.value.bits()) + 32):
-        factor = 1 / reference.value
+        shape = shape.scaled(1 / reference.value)
         motions = tuple(
-            replace(m, value=acb(1) if m.name == name and m.variable.kind == "node" else m.value * factor)
+            replace(m, value=acb(1)) if m.name == name and m.variable.kind == "node" else m
             for m in shape.motions
         )
-        distributed = tuple(p.scaled(factor) for p in shape.distributed)
-    return replace(shape, motions=motions, distributed=distributed, reference=name)
+    return replace(shape, motions=motions, reference=name)
+
+
+def is_accurate(shape: EnclosedShape, digits: int) -> bool:
+    """Tell whether motions, also at the far ends of distributed parts, have the requested digits."""
+    groups: dict[tuple[str, str], list[acb]] = {}
+    for motion in shape.motions:
+        groups.setdefault((motion.unit, motion.variable.kind), []).append(motion.value)
+    for part in shape.distributed:
+        middle, end = (part.state_at_share(Fraction(1, n)) for n in (2, 1))
+        for name, *values in zip(part.states, part.initial, middle, end, strict=True):
+            groups.setdefault((part.name, name), []).extend(values)
+    sizes = [
+        (max(float(abs(v.mid())) for v in values), max(float(v.rad()) for v in values))
+        for values in groups.values()
+    ]
+    overall = max((largest for largest, radius in sizes if largest > radius), default=0.0)
+    # What vanishes altogether has no size of its own to be measured by.
+    return all(
+        radius <= 10.0**-digits * (largest if largest > radius else overall) for largest, radius in sizes
+    )

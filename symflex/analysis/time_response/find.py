@@ -126,21 +126,10 @@ def time_response(
     else:
         quotient = without_lengths_of_zero(as_quotient(bound))
         sampled = _answer(Asked(quotient, integrations, times, digits))
-    return EnclosedResponse(
-        bound.name,
-        kind,
-        unit_of_response(bound.source.output, bound.source.input),
-        times.seconds,
-        sampled.values,
-        sampled.impulses,
-        sampled.jumps,
-        sampled.reason is None,
-        sampled.reason,
-        digits,
-        modes=sampled.modes,
-        method=sampled.method,
-        refused=sampled.refused,
-    )
+    unit, reason = unit_of_response(bound.source.output, bound.source.input), sampled.reason
+    parts = sampled.values, sampled.impulses, sampled.jumps, reason is None, reason
+    response = EnclosedResponse(bound.name, kind, unit, times.seconds, *parts, digits)
+    return replace(response, modes=sampled.modes, method=sampled.method, refused=sampled.refused)
 
 
 def responses_by_default(

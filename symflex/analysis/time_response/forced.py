@@ -123,18 +123,10 @@ def forced_response(
                 jumps += [JumpAt(j.time + at, j.height * factor) for j in fronts]
         response = tuple(total[i] if i >= 0 else arb(0) for i in moments)
     reason = next((own.reason for own in unit.values() if own.reason is not None), None)
-    return replace(
-        next(iter(unit.values())),
-        input=FORCED,
-        times=np.array([float(t) for t in times]),
-        enclosures=response,
-        impulses=tuple(impulses),
-        jumps=tuple(sorted(jumps, key=lambda j: j.time.mid())),
-        certified=reason is None,
-        reason=reason,
-        digits=digits,
-        modes=None,
-    )
+    seconds, jumps = np.array([float(t) for t in times]), sorted(jumps, key=lambda j: j.time.mid())
+    forced = replace(next(iter(unit.values())), input=FORCED, times=seconds, enclosures=response, modes=None)
+    forced = replace(forced, impulses=tuple(impulses), jumps=tuple(jumps), digits=digits)
+    return replace(forced, certified=reason is None, reason=reason)
 
 
 def exact_values(values: npt.ArrayLike, count: int) -> list[Fraction]:

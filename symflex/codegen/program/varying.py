@@ -120,13 +120,7 @@ class _Workshop:
         )
         below = [str(d) for d in parted.divisors]
         places = tuple(
-            (
-                i,
-                j,
-                singular.orders[i][j],
-                t.power // parted.step,
-                *(int(str(t.divisor) == d) for d in below),
-            )
+            (i, j, singular.orders[i][j], t.power // parted.step, *(int(str(t.divisor) == d) for d in below))
             for (i, j), summands in own.summands.items()
             for t in summands
         )

@@ -152,3 +152,10 @@ def _replacement(c: str) -> str:
     ):
         return "".join(map(_character, plain))
     return f"[U+{ord(c):04X}]"
+
+
+def prose(text: str) -> str:
+    """Return text with the space at its ends, which what runs beside it needs."""
+    before = " " if text[:1].isspace() else ""
+    after = " " if text[-1:].isspace() and text.strip() else ""
+    return f"{before}{escape_text(text)}{after}"

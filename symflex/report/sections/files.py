@@ -15,8 +15,7 @@ from symflex.codegen.exporters import EXPORTERS
 from symflex.codegen.latex import LOOP_TITLES
 from symflex.drawing import draw_model
 from symflex.errors import Diagnostic, SymflexError, UncertifiedError
-from symflex.figures import FIGURES, LOOP_FIGURES, AxisLimits, draw, draw_loop, draw_measured, draw_over
-from symflex.figures.axes import FREE
+from symflex.figures import FIGURES, LOOP_FIGURES, AxisLimits, draw, draw_measured, draw_over
 from symflex.files.write import free_name
 from symflex.loops.over import stability_over
 from symflex.model import Figure
@@ -43,6 +42,7 @@ WORDS: Final = {
     "bode": "Bode plot",
     "poles_zeros": "Poles and zeros",
     "modes": "Mode shapes",
+    "deflection": "Deflection shapes",
     "step": "Step response",
     "impulse": "Impulse response",
 }
@@ -112,7 +112,7 @@ def _picture(
     data = study.comparisons if figure.has_data and chosen else ()
     beside = next((c for c in data if c.measured.name == chosen[0].name), None)
     if figure.gain and figure.kind in LOOP_FIGURES:
-        drawn = draw_loop(figure.kind, study.loop(figure.gain), limits=figure.limits, band_hz=figure.band)
+        drawn = draw(figure.kind, study.loop(figure.gain), limits=figure.limits, band_hz=figure.band)
         caption = f"{LOOP_TITLES[figure.kind]}, gain {figure.gain}."
     elif figure.over:
         asked = PlotOptions(figure.kind, over=figure.over)
@@ -125,7 +125,7 @@ def _picture(
         )
         caption = f"{beside.measured.name} over {kind}, {beside.measured.values.size} lines."
     else:
-        frame = AxisLimits(x=(0.0, float(figure.until))) if figure.until else FREE
+        frame = AxisLimits(x=(0.0, float(figure.until)) if figure.until else None, at=figure.at)
         drawn = draw(figure.kind, chosen, band_hz=figure.band, frame=frame)
         caption = f"{WORDS.get(figure.kind, figure.kind)} of {', '.join(b.name for b in chosen)}."
     title = f"{figure.title}. " if figure.title else ""

@@ -56,7 +56,7 @@ def undamped():
 
 
 def drawn(kind, tfs, **asked):
-    return draw(kind, [bind(tf) for tf in tfs], **asked)
+    return draw(kind, [bind(tf) for tf in tfs], **{"frame": AxisLimits(at=(Fraction(1),)), **asked})
 
 
 def drawn_rational(kind, expression, **asked):
@@ -320,7 +320,7 @@ def test_limits_of_an_axis_that_a_figure_has_not_are_refused(tfs):
         ("nyquist", {"phase": (0, 1)}, "for 'bode'"),
         ("poles_zeros", {"phase": (0, 1)}, "for 'bode'"),
         ("bode", {"x": (0, 1)}, "its band"),
-        ("modes", {"y": (0, 1)}, "mode shapes"),
+        ("modes", {"y": (0, 1)}, "largest displacement"),
     ):
         with pytest.raises(UsageError, match=f"SF902.*{said}"):
             drawn(kind, tfs, frame=AxisLimits(**limits))

@@ -256,5 +256,5 @@ def test_a_gif_holds_one_period_of_every_mode(tmp_path):
 def test_only_what_moves_becomes_a_gif():
     model = pipeline.load(EPPINGER / "six_mass.toml")
     (bound,) = pipeline.derive_bound(model, model.transfer_functions[:1])
-    with pytest.raises(UsageError, match="only mode shapes move"):
+    with pytest.raises(UsageError, match="only shapes move"):
         render(draw("bode", [bound]), "gif")

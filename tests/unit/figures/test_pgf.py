@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from fractions import Fraction
 from functools import cache
 
 import pytest
@@ -9,7 +10,7 @@ import pytest
 from symflex import pipeline
 from symflex.codegen.latex import LatexExporter
 from symflex.errors import UsageError
-from symflex.figures import FIGURES, draw, render
+from symflex.figures import FIGURES, AxisLimits, draw, render
 from symflex.figures.files import pgf_text
 from symflex.print.latex import DOCUMENT
 from tests.unit.codegen.hostile_names import HOSTILE
@@ -56,7 +57,7 @@ def drawn(bounds):
 
 
 def text_of(kind, bounds, **asked):
-    figure = draw(kind, bounds, font="latex", **asked)
+    figure = draw(kind, bounds, frame=AxisLimits(at=(Fraction(1),)), font="latex", **asked)
     return render(figure, "pgf", font="latex").decode("ascii")
 
 

@@ -7,7 +7,7 @@ import pytest
 
 import symflex
 from symflex import pipeline
-from symflex.figures import LOOP_FIGURES, draw, draw_loop
+from symflex.figures import LOOP_FIGURES, draw
 from symflex.loops.of_model import characteristic_loop
 from tests.house.repository import ROOT
 from tests.unit.figures.texts import faults
@@ -43,7 +43,7 @@ def test_texts_of_a_figure_keep_apart(name, kinds):
 def test_texts_of_a_figure_of_a_loop_keep_apart():
     model = pipeline.load(MODELS / "eppinger1988/loops/lumped_bending_beam_position.toml")
     for kind in LOOP_FIGURES:
-        assert not faults(draw_loop(kind, characteristic_loop(model, "K"))), kind
+        assert not faults(draw(kind, characteristic_loop(model, "K"))), kind
 
 
 def loop(expression, **parameters):

@@ -10,7 +10,7 @@ from scipy.special import lambertw
 
 import symflex
 from symflex.errors import UsageError
-from symflex.figures import AxisLimits, draw_loop
+from symflex.figures import AxisLimits, draw
 from symflex.loops import loop_gain, trace_locus
 from symflex.loops.of_model import characteristic_loop
 from tests.unit.refusals import refusal
@@ -199,7 +199,7 @@ def test_a_range_that_is_none_is_told_in_its_own_words(loop):
 @pytest.mark.slow
 def test_the_frame_holds_the_poles_at_the_last_gain(loop):
     done = characteristic(loop("K*D*(s + 3)/(s + 1)", T="0.1 s"))
-    figure = draw_loop("locus", done, limits=(Fraction(0), Fraction(9, 10)))
+    figure = draw("locus", done, limits=(Fraction(0), Fraction(9, 10)))
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert labels == ["poles, $K = 0$", "poles, $K = 0.9$", "zeros", "from poles not marked"]
     # The fifth mode is near (2 n + 1) pi / T for n = 3.
@@ -208,7 +208,7 @@ def test_the_frame_holds_the_poles_at_the_last_gain(loop):
 
 
 def test_a_locus_is_shown_as_far_as_the_band_reaches(loop):
-    figure = draw_loop(
+    figure = draw(
         "locus", characteristic(loop("K*(s + 30)/((s + 1)*(s + 2))")), band_hz=(0, 20 / (2 * np.pi))
     )
     (axes,) = figure.axes
@@ -233,7 +233,7 @@ def test_as_many_modes_are_traced_as_a_band_holds(loop):
 def test_a_locus_has_the_limits_asked_for_and_counts_what_is_outside(loop):
     frame = AxisLimits(x=(-3, 1), y=(0, 2))
     done = characteristic(loop("K*(s + 30)/((s + 1)*(s + 2))"))
-    figure = draw_loop("locus", done, limits=(Fraction(0), Fraction(1000)), frame=frame)
+    figure = draw("locus", done, limits=(Fraction(0), Fraction(1000)), frame=frame)
     assert (figure.axes[0].get_xlim(), figure.axes[0].get_ylim()) == ((-3, 1), (0, 2))
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert labels == ["poles, $K = 0$", "poles, $K = 1$ (all outside)", "poles, $K = 1000$ (all outside)"]
@@ -243,7 +243,7 @@ def test_a_nyquist_plot_says_whether_the_closed_loop_is_stable(loop):
     # K exp(-s/2)/s is stable up to K = pi, where a pair crosses; the next one does at 5 pi.
     said = "unstable: 2 poles in the right half-plane"
     asked = AxisLimits(has_verdict=True)
-    figure = draw_loop("nyquist", characteristic(loop("K*D/s", K=4)), title="A loop", frame=asked)
+    figure = draw("nyquist", characteristic(loop("K*D/s", K=4)), title="A loop", frame=asked)
     (legend,) = figure.legends
     assert legend.get_title().get_text() == (f"A loop\nclosed loop {said}")
 

@@ -13,7 +13,7 @@ from flint import acb
 from symflex import pipeline
 from symflex.budget import Budget
 from symflex.errors import BudgetError, Diagnostic, ModelError
-from symflex.figures import draw_loop
+from symflex.figures import draw
 from symflex.loops import NetworkLoop, loop_gain, of_model, trace_locus
 from symflex.loops.of_model import stability
 from symflex.options import StabilityOptions
@@ -179,7 +179,7 @@ def test_a_loop_gain_is_that_of_the_formula(monkeypatch):
 @pytest.mark.slow
 def test_a_nyquist_plot_says_that_poles_of_a_network_are_known_in_a_disc():
     loop = of_model.characteristic_loop(pipeline.loads(chain(6)), "K")
-    figure = draw_loop("nyquist", loop, band_hz=(1, 40))
+    figure = draw("nyquist", loop, band_hz=(1, 40))
     assert figure.legends[0].get_texts()[0].get_text().endswith(", $P$ not known")
 
 
