@@ -127,9 +127,10 @@ def _parameter(one: Field[Any]) -> Callable[[Callable[..., int]], Callable[..., 
         said["type"] = click.Choice(said.pop("choices"))
     elif "least" in said:
         is_real = said.get("type") is float
-        kind = click.FloatRange if is_real else click.IntRange
         said.setdefault("metavar", "X" if is_real else "D" if "--digits" in flags else "N")
-        said["type"] = kind(said.pop("least"), said.pop("most", None))
+        kind = (click.FloatRange if is_real else click.IntRange)(said.pop("least"), said.pop("most", None))
+        kind.name = "number" if is_real else "whole number"
+        said["type"] = kind
     elif said.pop("is_path", False):
         said["type"] = click.Path()
     elif said.pop("is_folder", False):

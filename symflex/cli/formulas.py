@@ -361,7 +361,7 @@ def audit(spec: Specification, given: AuditOptions) -> int:
     model = spec.load()
     audits = audit_layer.audit(model, given.tfs)
     if not model.published:
-        note('nothing is published in this specification: [published."OUT/IN"] holds a printed formula')
+        note('nothing is published in this specification: put a formula into [published."OUT/IN"]')
     if given.as_json:
         emit_json(audit_document(audits))
     elif audits:

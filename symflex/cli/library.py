@@ -105,7 +105,7 @@ def elements(name: str | None, *, as_json: bool) -> int:
     from symflex.library.words import hint_of_type
 
     if name is not None and name not in (*ELEMENTS, *BLOCKS, MODEL_BLOCK):
-        hint = hint_of_type(name, (*ELEMENTS, *BLOCKS, MODEL_BLOCK)) or "symflex elements lists them"
+        hint = hint_of_type(name, (*ELEMENTS, *BLOCKS, MODEL_BLOCK)) or "'symflex elements' lists them"
         raise refused(f"there is no element or block '{name[:64]}'", hint)
     elements = [e for e in ELEMENTS.values() if name in (None, e.type_name)]
     blocks = [b for b in BLOCKS.values() if name in (None, b.type_name)]

@@ -29,7 +29,7 @@ class Thing:
         """Return what to say to somebody who wrote one of the words as a type."""
         if not self.use:
             return f"there is no {word}: {self.how}"
-        return f"for {word} write {self.use}" + (f": {self.how}" if self.how else "")
+        return f"for {word} write {self.use.replace(', ', ' or ')}" + (f": {self.how}" if self.how else "")
 
 
 # Words, the element or block, and what to write; indented lines continue one.

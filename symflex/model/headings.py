@@ -35,7 +35,7 @@ def check_header(reader: Reader, spec: Spec) -> None:
     reader.keys(spec.root, TOP_KEYS, "the specification")
     version = spec.root.get("symflex")
     if version is None:
-        message = "the specification does not say its format version"
+        message = "the specification does not state its format version"
         reader.note("SF200", message, Span(spec.source, 0, 0), "begin the file with: symflex = 1")
         return
     literal = getattr(version.value, "value", None)

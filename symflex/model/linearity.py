@@ -296,7 +296,7 @@ def _unknown_function(call: Call, scope: ModelScope) -> Diagnostic:
     if meanings:
         message = f"'{call.name}' is {meanings[0].described}, not a function"
         hint = f"write '{call.name}*(...)' to multiply"
-        hint += f"; {IN_TIME}" if call.name == "d" else ""
+        hint += f"; {IN_TIME}" * (call.name == "d") + "; a node has no '(t)'" * (" node " in message)
         return Diagnostic("SF210", message, call.span, hint)
     if call.name.lower() in OPERATORS:
         hint = f"{IN_TIME}, and an integral x/s"

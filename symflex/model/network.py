@@ -8,7 +8,7 @@ from fractions import Fraction
 from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
 
-from symflex.errors import Diagnostic, Span, Text, nearest
+from symflex.errors import Diagnostic, Span, Text, counted, nearest
 from symflex.library.blocks import BLOCKS
 from symflex.library.elements import CIRCUITS, COMPONENT_DOMAIN, COMPONENTS, ELEMENTS, Element, Port, Variable
 from symflex.library.words import hint_of_type
@@ -246,9 +246,9 @@ def _references(
             return tuple(NodeReference(n) for n in port.default)
         if port.name in meant:
             return None
-        ports = ", ".join(p.name for p in element.ports)
+        nodes = '"a"' if wanted == 1 else str(list("abcd"[:wanted])).replace("'", '"')
         message = f"{element.type_name} '{entry.key}' lacks its port '{port.name}' ({port.doc})"
-        written = _as_ports(table, element) or f"ports of {element.type_name}: {ports}"
+        written = _as_ports(table, element) or f"for instance {port.name} = {nodes}"
         reader.note("SF217", message, entry.key_span, written)
         return None
     kind = "the name of a node" if wanted == 1 else f"an array of {wanted} nodes"
@@ -258,7 +258,6 @@ def _references(
     if port.reacts and len(texts) == 2:  # noqa: PLR2004
         wanted = 2
     if len(texts) != wanted:
-        plural = "node" if wanted == 1 else "nodes"
         hint = f"two nodes are written {port.pair} = [...]" if port.pair else None
         if port.reacts:
             hint = f'two nodes at most, the second for the reaction: {port.name} = ["a", "b"]'
@@ -267,7 +266,7 @@ def _references(
             ends = ", ".join(f'"{name}"' for name in (*given, *["ground"] * (wanted - len(given))))
             rests = RESTS.get(port.domain, "an end that does not move")
             hint = f'{rests} is at "ground": [{ends}]'
-        message = f"{what} takes {wanted} {plural}, found {len(texts)}"
+        message = f"{what} takes {counted(wanted, 'node')}, found {len(texts)}"
         reader.note("SF217", message, entry_given.value.span, hint)
         return None
     references = [_reference(reader, t, port.domain, what) for t in texts]

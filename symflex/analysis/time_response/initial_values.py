@@ -61,7 +61,7 @@ def free_motion(model: Model, pair: tuple[str, str], initial: Mapping[str, str])
     for i, (name, text) in enumerate(initial.items()):
         match = _QUANTITY.fullmatch(name.replace(" ", ""))
         if match is None or match["quantity"] not in unknowns:
-            hint = nearest(name, unknowns) or f"such as x, s*x, coil.i; here of {', '.join(unknowns)}"
+            hint = nearest(name, unknowns) or f"x, s*x or coil.i for instance; here {', '.join(unknowns)}"
             message = f"'{name[:64]}' is not a quantity whose initial value can be given"
             raise UsageError(Diagnostic("SF902", message, None, hint))
         variable, order = unknowns[match["quantity"]], int(match["order"] or bool(match["s"]))

@@ -240,7 +240,9 @@ def _bad_collection(source: Source, text: str, whole: Span, message: str, place:
         return Diagnostic("SF101", said, span, hint)
     if message.startswith("Unclosed"):
         closing = "]" if message.endswith("array") else "}"
-        return Diagnostic("SF101", f"expected ',' or '{closing}', found {_shown(written)}", span)
+        number = re.search(r"=\s*([-+.\d]+)\s*$", text[: place.start])
+        cure = f'put a quantity in quotes: "{number[1]} {_cut(written)}"' if number else None
+        return Diagnostic("SF101", f"expected ',' or '{closing}', found {_shown(written)}", span, cure)
     return Diagnostic("SF101", f"unexpected {_shown(written)}: {message[:1].lower()}{message[1:]}", span)
 
 

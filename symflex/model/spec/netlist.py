@@ -497,9 +497,8 @@ class _Netlist:
         inputs = (self._node(words[plus], scope), self._node(words[minus], scope))
         out = self._node(words[last], scope)
         inner = self._node(f"{words[0]} out", scope) if "rout" in given else out
-        for key, ends in (("rin", inputs), ("rout", (inner, out))):
+        for key, part, ends in (("rin", f"{name}_rin", inputs), ("rout", f"{name}_rout", (inner, out))):
             if key in given:
-                part = f"{name}_{key}"
                 value = self._valued(line, part, given[key], scope, "Ohm")
                 self._add(part, f'type = "resistor", between = {_texts(ends)}, R = "{value}"', line)
         text, band = given.get("avol", given.get("aol", "")), given.get("gbw", "")
@@ -515,8 +514,6 @@ class _Netlist:
                 name = self.given.get(key, key)
                 is_number = re.fullmatch(r"[-+.\de]+", value, re.I) is not None
                 (self.circuit.parameters if is_number else self.circuit.definitions)[name] = value
-        elif word == "func":
-            raise line.refuse("functions of .func are not read", "write the expression where it is used")
         elif word == "global":
             self.shared |= {w.lower() for w in line.words[1:]}
         elif word == "source":  # SLiCAP
@@ -533,6 +530,7 @@ class _Netlist:
                 self.sensed.setdefault("", line.words[2])
         elif word not in IGNORED:
             hint = nearest(word, [*IGNORED, "param", "ac", "print", "tf", "include", "subckt"])
+            hint = "write the expression where it is used" if word == "func" else hint
             raise line.refuse(f"'.{word[:40]}' is not a directive that is read", hint)
 
     def _output(self, line: Card, word: str, scope: _Scope) -> None:

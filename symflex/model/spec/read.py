@@ -121,7 +121,7 @@ def _not_utf8(name: str, data: bytes, offset: int) -> Diagnostic:
     start = len(data[:offset].decode("utf-8"))
     message = f"not UTF-8: byte 0x{data[offset]:02x} at byte offset {offset}"
     utf16 = data.startswith(_UTF16_MARKS)
-    hint = "this is UTF-16; save the file as UTF-8" if utf16 else "save the file as UTF-8"
+    hint = "this is UTF-16; save the file as UTF-8" if utf16 else "a specification is text in UTF-8"
     return Diagnostic("SF901", message, Span(source, start, start + 1), hint)
 
 
