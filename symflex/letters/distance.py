@@ -16,17 +16,21 @@ from dataclasses import replace
 from decimal import ROUND_CEILING, Context
 from fractions import Fraction
 from functools import cache
+from itertools import combinations_with_replacement
 from math import inf, isfinite, isnan, log, nextafter
 
-from flint import acb, arb
+from flint import acb, acb_poly, arb, arb_poly
 
 from symflex.balls import covered, precision
+from symflex.budget import spend
 from symflex.print.forms.printed import Approximation
 from symflex.roots import PoleZeroMap, Root
 from symflex.roots.locate import locate
 from symflex.roots.region import Band
 from symflex.roots.root import modes_of
 from symflex.transfer import BoundTransferFunction
+
+Term = tuple[int, acb, Sequence[int]]  # a power of s, the rest at the values, and exponents of letters
 
 BITS = 128
 DECADE = 10  # ratio of a band's ends to the lowest and the highest root, where the model declares no band
@@ -35,14 +39,13 @@ UNCHANGED = 1e-12  # change below which the radius of a ball is all there is
 LOST = 0.5  # displacement from which a root is no longer taken for the same one
 DECIBELS = 1.0  # difference in magnitude that statements are about: 12 %
 BESIDE = 1.05  # ratio of frequencies up to which a part of the band is joined to a resonance or to a gap
+TRIES = 12  # radii about a root that are tried
 SHOWN = 6  # number of parts of a band, or of roots, that a sentence lists
 
 
 def percent(share: float) -> str:
     """Return a bound in percent, rounded up.
 
-    Examples
-    --------
     >>> percent(0.005401), percent(0.0)
     ('0.55 %', '0 %')
     """
@@ -55,22 +58,28 @@ def distance(
     after: BoundTransferFunction,
     roots: tuple[PoleZeroMap, PoleZeroMap],
     errors: Sequence[float] = (),
+    over_box: Sequence[float | None] = (None, None),
 ) -> Approximation:
     """Return how far a function is from the one it stands in place of, in the band of the model.
 
-    For each of some relative ``errors`` it says up to which frequency it is not exceeded.
+    For each of some relative ``errors`` it says up to which frequency it is not exceeded. ``over_box``
+    are displacements of poles and of zeros over a spread.
     """
     first, second = roots
     low, high = band = band_of(before, first)
     said: list[str] = []
     facts: dict[str, object] = {"band_hz": [low, high]}
     places = {}
-    for kind, one, other in (("poles", first.poles, second.poles), ("zeros", first.zeros, second.zeros)):
+    both = ("poles", first.poles, second.poles), ("zeros", first.zeros, second.zeros)
+    for (kind, one, other), over in zip(both, over_box, strict=True):
         worst, compared, lost = _moved(one, other, high)
         how = f"moved by at most {percent(worst)}" if worst > UNCHANGED else "where they were"
+        if over:
+            how += f", over the spread {f'by {percent(over)}' if isfinite(over) else 'not bounded'}"
         parts = [f"{compared} {how}"] * bool(compared) + [f"{lost} without a counterpart"] * bool(lost)
         said += [f"{kind} up to {high:.4g} Hz: {', '.join(parts)}"] if parts else []
-        facts[kind] = {"displacement": worst, "compared": compared, "lost": lost}
+        known = over if over is not None and isfinite(over) else None
+        facts[kind] = {"displacement": worst, "spread": known, "compared": compared, "lost": lost}
         places[kind] = tuple({r.frequency_hz(): None for r in modes_of(one)})
     facts["certified"] = is_certified = first.certificate.certified and second.certificate.certified
     said += [] if is_certified else ["NOT CERTIFIED: roots may be missing"]
@@ -159,6 +168,47 @@ def _moved(before: Sequence[Root], after: Sequence[Root], high_hz: float) -> tup
     balls = [(one[i].enclosure(), other[j].enclosure()) for i, j in pairs.items()]
     worst = max((upper(abs(a - b) / abs(a)) for a, b in balls), default=0.0)
     return worst, len(pairs), len(one) - len(pairs)
+
+
+def moved_over(whole: Sequence[Term], gone: Sequence[Term], root: acb, halves: Sequence[arb]) -> float:
+    """Bound how far a root moves, relative to it, where terms go and letters are ``exp(x_j)`` times theirs.
+
+    In ``s = root y exp(a x)``, a the slopes of its logarithm, y keeps next to 1 for ``|x_j| <= halves[j]``.
+    For ``|y - 1| <= R`` the slope in y has along that at 1 a real part of at least ``2 |slope| - N'(R)``,
+    where N adds up by powers of y - 1 what all terms are at most, and M those that go. So a root lies within
+    ``N(0)`` over it of 1, and the one without these terms within ``M(R)`` over it of that, if both together
+    are less than R (Rouche).
+    """
+    own, without = ([(n, v * root**n, m) for n, v, m in terms] for terms in (whole, gone))
+    every = range(len(halves))
+    slope, size = sum((c * n for n, c, _ in own), acb(0)), sum((abs(c) for _, c, _ in own), arb(0))
+    rates = [-sum((c * m[j] for _, c, m in own), acb(0)) / slope for j in every]
+    # What all terms have in common is taken out of them.
+    means = [sum((abs(c) * (m[j] + n * rates[j]) for n, c, m in own), acb(0)) / size for j in every]
+
+    def most(terms: Sequence[Term]) -> arb_poly:
+        twice = [*combinations_with_replacement(every, 2)]
+        sizes = [arb(1), *halves, *(halves[i] * halves[j] / (1 + (i == j)) for i, j in twice), arb(1)]
+        parts = [[acb(0)] * (1 + max(n for n, *_ in own)) for _ in sizes]  # to second order, and the rest
+        for n, c, m in terms:
+            along = [m[j] + n * rates[j] - means[j] for j in every]
+            x = sum((abs(a) * half for a, half in zip(along, halves, strict=True)), arb(0))
+            factors = acb(1), *along, *(along[i] * along[j] for i, j in twice)
+            for part, factor in zip(parts, factors, strict=False):
+                part[n] += c * factor
+            parts[-1][n] += abs(c) * (x.exp() - 1 - x - x * x / 2)
+        about_one = [(acb_poly(p)(acb_poly([1, 1])), size) for p, size in zip(parts, sizes, strict=True)]
+        return sum((arb_poly([abs(c) * size for c in p]) for p, size in about_one), arb_poly([0]))
+
+    near, moved, reach = most(own), most(without), arb(0)
+    for _ in range(TRIES):
+        spend()
+        floor = 2 * abs(slope) - near.derivative()(reach)
+        needed = (near[0] + moved(reach)) / floor
+        if floor > near[0] and needed < reach:
+            return upper(moved(reach) / (floor - near[0]))
+        reach = (needed * arb("1.1")).upper()
+    return inf
 
 
 def alike(

@@ -20,7 +20,7 @@ from fractions import Fraction
 from functools import partial
 from math import inf, prod
 
-from flint import acb, arb, fmpz_mpoly
+from flint import acb, acb_poly, arb, fmpz_mpoly
 
 from symflex.algebra import Factored
 from symflex.algebra.ring import irreducible_factors
@@ -28,7 +28,7 @@ from symflex.algebra.vanishing import OriginSeries
 from symflex.balls import at_centre, ball, precision
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, ModelError, UsageError, counted
-from symflex.letters.distance import BITS, UNCHANGED, alike, band_of, distance, percent, roots_of, upper
+from symflex.letters.distance import BITS, alike, band_of, distance, moved_over, percent, roots_of, upper
 from symflex.letters.nested import NestedForm, Parts
 from symflex.letters.order import truncated
 from symflex.model import spread_box
@@ -51,6 +51,7 @@ Term = tuple[tuple[int, ...], int]
 Share = tuple[arb, int]
 Box = Mapping[str, tuple[Fraction, Fraction]]
 Image = tuple[fmpz_mpoly, Factored, int]  # a factor, the shorter one in its place, and its exponent
+Maps = tuple[PoleZeroMap, PoleZeroMap]
 Way = tuple[TransferFunction, PrintedForm | None, Sequence[Image], tuple[float, float]]
 """A short function, its print, and the changes of a coefficient at the values and over the box."""
 
@@ -70,6 +71,7 @@ class _Letters:
     keys: tuple[int, ...]  # positions of the others: s, wavenumbers, kernels, the imaginary unit
     values: Mapping[int, arb]
     ends: Mapping[int, tuple[arb, arb]]  # logarithms of what they may be multiplied by
+    box: Box
 
     @staticmethod
     def of(tf: TransferFunction, box: Box) -> _Letters:
@@ -90,7 +92,7 @@ class _Letters:
             if known[name] != 0 and not scale.rad() < TINY:
                 ends[index[name]] = scale.lower().log(), scale.upper().log()
         keys = tuple(i for name, i in index.items() if name not in known)
-        return _Letters(keys, {index[n]: v for n, v in known.items() if n in index}, ends)
+        return _Letters(keys, {index[n]: v for n, v in known.items() if n in index}, ends, box)
 
     def groups(self, polynomial: fmpz_mpoly) -> dict[Key, list[Term]]:
         """Return the terms of each coefficient of s and of kernels."""
@@ -135,6 +137,25 @@ class _Letters:
             each = abs(sum(map(self.value, terms), arb(0)) / total), _most(self.shares(whole[key], terms))
             worst = max(worst[0], upper(each[0])), max(worst[1], upper(each[1]))
         return worst
+
+    def displacement(self, before: fmpz_mpoly, after: fmpz_mpoly, high: float) -> float:
+        """Return how far roots up to a frequency [Hz] move over the box, relative to them; inf if unknown."""
+        groups = self.groups(before), self.groups(before - after)
+        least, (top, *others) = min(groups[0])[0], map(max, zip(*groups[0], strict=True))
+        if not groups[1] or any(others):
+            return inf if groups[1] else 0.0
+        whole, gone = (
+            [(key[0] - least, acb(self.value(t)), [t[0][i] for i in self.ends]) for key in g for t in g[key]]
+            for g in groups
+        )
+        side = [sum((v for n, v, _ in whole if n == k), arb(0)) for k in range(top - least + 1)]
+        try:
+            roots = acb_poly(side).roots()
+        except ValueError:  # some root is a multiple one
+            return inf
+        shown = [r for r in roots if not (r.imag < 0 or abs(r) > 2 * arb.pi() * high)]
+        halves = [abs(a).max(abs(b)) for a, b in self.ends.values()]
+        return max((moved_over(whole, gone, r, halves) for r in shown), default=0.0)
 
 
 def _most(shares: Sequence[Share]) -> arb:
@@ -267,10 +288,12 @@ def _by_print(
             yield short, printed, images(parts) if has_box else (), (change, max(change, over_box(parts)))
 
 
-def _over_box(
-    tf: TransferFunction, box: Box, images: Sequence[Image], band: tuple[float, float]
-) -> tuple[tuple[tuple[float, float], ...], str]:
-    """Return where in a band the magnitude of a short function is near the other for all values of a box."""
+def _apart(tf: TransferFunction, way: Way, letters: _Letters, roots: Maps) -> Approximation:
+    """Return how far a short function is from the other, also over a box."""
+    (short, _, images, _), own, box = way, bind(tf), letters.box
+    band = band_of(own, roots[0])
+    if not box:
+        return distance(own, bind(short), roots)
     fixed = tuple((name, partial(arb, ball(low).union(ball(high)))) for name, (low, high) in box.items())
     others = tuple((p.name, p.value) for p in tf.model.parameters if p.value and p.name not in box)
     kernels = BoundTransferFunction(tf, others, tf.ratio, (), tf.kernels, fixed=fixed).kernel_values()
@@ -281,7 +304,12 @@ def _over_box(
         return prod((at_centre(1 + kernels.value(x, at)) ** -n for x, n in lost), start=acb(1))
 
     with precision(BITS):
-        return alike(quotient, band, COARSE)
+        of_s = tf.model.root is None
+        moves = [(n, letters.displacement(x, y.expand(), band[1]) if of_s else inf) for x, y, n in images]
+        bands, where = alike(quotient, band, COARSE)
+    most = [max((x for n, x in moves if n * sign > 0), default=0.0) for sign in (-1, 1)]
+    apart, facts = distance(own, bind(short), roots, over_box=most), {"within_1_db_over_spread_hz": bands}
+    return Approximation((*apart.said, f"magnitude over the spread {where}"), apart.facts | facts)
 
 
 def _counts(located: PoleZeroMap, end: float) -> list[int]:
@@ -338,30 +366,30 @@ def shortened(
         else:
             tried.append((kept + 1, tf, exact, whole, first))
     tried.append((0, tf, exact, whole, first))
-    kept, short, printed, (_, _, images, changes), roots = min(
+    kept, short, printed, way, roots = min(
         tried, key=lambda each: length(each[2].num, each[2].den, *dict(each[2].where).values())
     )
+    changes = way[3]
     terms, fewest = (terms_of(short.ratio), terms_of(tf.ratio)), min(terms_of(x.ratio) for _, x, *_ in tried)
     over = f", over the spread by {percent(changes[1])}" if box else ""
     said = [f"{terms[0]} of {terms[1]} terms; coefficients change by at most {percent(changes[0])}{over}"]
-    said += [f"with {fewest} terms the print would be longer"] if short is tf and fewest < terms[1] else []
+    if short is tf:
+        stay = f": all {terms[1]} stay" if terms[1] > 1 else ""
+        longer = [f"with {fewest} terms the print would be longer"] * (fewest < terms[1])
+        said = [f"no term can be dropped within {100 * float(most):g} %{stay}", *longer]
     static, after = None, bind(short)
     if own.is_rational:
         with precision(BITS):
             unit = acb(ball(after.ratio.unit / own.ratio.unit))
             static = upper(abs(unit * _first(after) / _first(own) - 1))
-    said += [f"value for s -> 0: changed by {percent(static)}"] if static and static > UNCHANGED else []
+    said += [f"value for s -> 0: changed by {percent(static)}"] if static and static > TINY else []
     part = f"{counted(kept, 'part')} kept whole, as a root would cross the imaginary axis or cancel"
     said += [part] if kept else []
     coefficients = {"nominal": changes[0], "spread": changes[1] if box else None}
     facts = {"kind": "short", "bound": float(most), "terms": [*terms], "coefficients": coefficients}
-    apart = Approximation((), {}) if short is tf else distance(own, after, (first, roots))
+    apart = Approximation((), {}) if short is tf else _apart(tf, way, letters, (first, roots))
     facts |= {"static": static, "kept_whole": kept} | apart.facts
     said += apart.said
-    if box and short is not tf:
-        bands, where = _over_box(tf, box, images, band_of(own, first))
-        said.append(f"magnitude over the spread {where}")
-        facts["within_1_db_over_spread_hz"] = [[*each] for each in bands]
     return short, replace(printed, approximation=Approximation(tuple(said), facts, short is tf))
 
 

@@ -122,18 +122,23 @@ def test_no_statement_is_exceeded_at_random_points_of_the_box_and_of_the_band():
     short, printed = shortened(tf, Fraction(3, 100))
     before, after, facts = Form(tf, print_form(tf)), Form(short, printed), printed.approximation.facts
     assert facts["terms"][0] < facts["terms"][1]
-    worst, decibels = 0.0, 0.0
+    worst, decibels, moved = 0.0, 0.0, {"poles": 0.0, "zeros": 0.0}
     for _ in range(200):
         point = {name: value * (1 + spread * random.choice((-1, 1))) for name, value in VALUES.items()}
-        pairs = [(before.num, after.num), (before.den, after.den)]
-        shares = [coefficients(y, point) / coefficients(x, point) for x, y in pairs]
+        sides = [(before.num, after.num), (before.den, after.den)]
+        pairs = [tuple(coefficients(side, point) for side in pair) for pair in sides]
+        shares = [y / x for x, y in pairs]
         worst = max(worst, *(float(abs(each - 1).max()) for each in shares))
+        for kind, pair in zip(("zeros", "poles"), pairs, strict=True):
+            one, other = map(np.roots, pair)
+            moved[kind] = max(moved[kind], *(min(abs(other - root)) / abs(root) for root in one))
         for low, high in facts["within_1_db_over_spread_hz"]:
             s = 2j * np.pi * np.geomspace(low, high, 50)
-            num, num_s, den, den_s = (np.polyval(coefficients(x, point), s) for each in pairs for x in each)
+            num, num_s, den, den_s = (np.polyval(x, s) for pair in pairs for x in pair)
             decibels = max(decibels, *np.abs(20 * np.log10(np.abs(num_s * den / (num * den_s)))))
     assert 0 < decibels <= 1
     assert worst <= facts["coefficients"]["spread"] <= 1.5 * worst
+    assert all(moved[kind] <= facts[kind]["spread"] <= 1.5 * moved[kind] for kind in moved)
     num, den, num_s, den_s = (coefficients(x, VALUES) for x in (before.num, before.den, after.num, after.den))
     for kind, one, other in (("poles", den, den_s), ("zeros", num, num_s)):
         gaps = [min(abs(np.roots(other) - root)) / abs(root) for root in np.roots(one)]
@@ -142,6 +147,21 @@ def test_no_statement_is_exceeded_at_random_points_of_the_box_and_of_the_band():
         s = 2j * np.pi * np.geomspace(low, high, 200)
         quotient = np.polyval(num_s, s) * np.polyval(den, s) / (np.polyval(num, s) * np.polyval(den_s, s))
         assert np.all(np.abs(20 * np.log10(np.abs(quotient))) <= 1 + 1e-9)
+
+
+def test_roots_that_may_merge_over_the_spread_are_not_bounded():
+    # s^2 + 2 z s + 1 has a double root for z = 1; the zero of the numerator moves by d/a, over the spread too
+    values = {"a": (2, 0.1), "d": (0.01, 0.1), "z": (0.95, 0.1)}
+    form = shortened(function("u*(s + a + d)/(s^2 + 2*z*s + 1 + d)", **values), Fraction(2, 100))[1]
+    facts = form.approximation.facts
+    assert facts["poles"]["spread"] is None
+    assert 0.011 / 1.811 <= facts["zeros"]["spread"] <= 0.0063
+    assert any("over the spread not bounded" in line for line in form.approximation.said)
+
+
+def test_a_formula_in_which_every_term_counts_is_said_to_stay():
+    form = shortened(function("u/(a*s + b)", a=1, b=2), Fraction(1, 100))[1]
+    assert form.approximation.said == ("no term can be dropped within 1 %: all 2 stay",)
 
 
 NESTED = "u*(3*M*s^2 + 2*K)/((M*s^2 + B*s + K + g*cos(p))*(3*M*s^2 + 2*K) + 6*K*M*s^2)"
