@@ -62,7 +62,7 @@ def roots_in_letters(
     given = {p.name: p.value for p in tf.model.parameters if p.value is not None}
     given |= dict(bound.values) if bound.is_reduced else {}
     known = {name: enclosure(x) for name, x in given.items()}
-    known |= {d.name: later(d.expression, {**known}) for d in tf.model.definitions}
+    known |= {d.name: later(d.expression, known) for d in tf.model.definitions}
     reader = LetterReader(tf, known, plain_printer(tf), Signs.of(tf))
     sides = {"poles": [f for f, _ in tf.den.factors], "zeros": [f for f, _ in tf.num.factors]}
     sides["hidden"] = [h.polynomial for h in tf.hidden]

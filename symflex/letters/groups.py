@@ -123,7 +123,8 @@ def _in_groups(tf: TransferFunction) -> InLetters:
         images[main] = written_powers(halves | {Name(name): ONE})
         rows.append(_row(tf, name, group, words))
     images |= {} if S.name in own else {S.name: e.number(1)}
-    lines, meant = dict(form.where), dict(definitions_of(tf))
+    one, meant = e.number(1), dict(definitions_of(tf))
+    lines = {n: e.replace_node(plain(line, {}), e.Call("sqrt", one), one) for n, line in form.where}
     # The model's own names mean something else in groups; what is only another name is left out as well.
     inside = {name: lines.pop(name) for name in (*lines,) if name in meant or isinstance(lines[name], Name)}
     function = e.quotient(form.num, form.den)

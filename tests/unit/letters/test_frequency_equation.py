@@ -81,6 +81,8 @@ CASES = (
     (SHAFT % ("ground", "x"), ('torque = "x"', "x"), "poles", mpmath.cos),
     (SHAFT % ("y", "x"), ('torque = "x"', "x"), "poles", mpmath.sin),
     (STRING % ("ground", "x"), PUSH, "poles", mpmath.cos),
+    (STRING % ("ground", "x"), PUSH, "zeros", mpmath.sin),
+    (ROD % ("ground", "x"), PUSH, "zeros", mpmath.sin),
 )
 
 

@@ -44,6 +44,7 @@ CART = (
     'inputs.F = {}\n[equations]\nunknowns = ["x", "a"]\n'
     'equations = ["(M + m)*s^2*x + m*l*s^2*a = F", "s^2*x + l*s^2*a - g*a = 0"]\n[outputs]\nX = "x"\n'
 )
+LINES = 'definitions.w = "sqrt(k/m)"\ndefinitions.b = "2*z*m*w"\n'
 NECK = part("a", "mass", "x", m="rho*S*L") + part("c", "spring", "x ground", k="rho*c^2*S^2/V") + PUSH
 TUBE = part("a", "mass", "x", m="rho*S*L") + part("c", "spring", "x ground", k="2*rho*g*S") + PUSH
 LEVER = part("a", "mass", "x", m="m") + part("c", "spring", "y ground", k="k") + PUSH
@@ -66,6 +67,7 @@ BOOKS = (
     ("J_1 J_2 k", SHAFT, "omega_z", "sqrt(k/J_2)"),
     ("m b k", HELD + part("d", "damper", "x ground", b="b"), "omega_p", "sqrt(k/m)"),
     ("m b k", HELD + part("d", "damper", "x ground", b="b"), "zeta_p", "b/(2*sqrt(k*m))"),
+    ("m z k", LINES + HELD + part("d", "damper", "x ground", b="b"), "zeta_p", "z"),
     ("R L C", SERIES, "omega_p", "1/sqrt(L*C)"),
     ("R L C", SERIES, "zeta_p", "R/2*sqrt(C/L)"),
     ("R L C", SERIES, "Q_p", "sqrt(L/C)/R"),
