@@ -90,8 +90,6 @@ class Budget:
     def share(self, fraction: float) -> Budget:
         """Return a budget with the same start that ends after a fraction of the time.
 
-        Examples
-        --------
         >>> Budget(seconds=2).share(0.75).seconds
         1.5
         """

@@ -296,8 +296,6 @@ def respond(
     how fine the grid is. ``roots`` are all poles and zeros, of a distributed system those in the band, when
     they are known already. SF902 unless ``omega`` [rad/s] is real, one-dimensional and finite.
 
-    Examples
-    --------
     >>> from symflex.errors import Source
     >>> from symflex.model import load_model
     >>> from symflex.equations import assemble
@@ -423,8 +421,6 @@ def default_band(*maps: PoleZeroMap) -> tuple[float, float]:
     highest pole found; 0.1 Hz to 10 Hz when there is none. Real roots more than a decade above the highest
     that oscillate do not count.
 
-    Examples
-    --------
     >>> from symflex.roots import RootProblem, find_pole_zero_map
     >>> one = RootProblem.from_rationals([1])
     >>> low, high = default_band(find_pole_zero_map("x/F", RootProblem.from_rationals([9, 0, 1]), one))

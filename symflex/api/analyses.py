@@ -470,8 +470,6 @@ def budget_of(seconds: float | None) -> Budget:
 
     Raises UsageError: SF902 when the time is not positive and finite.
 
-    Examples
-    --------
     >>> budget_of(2.5).seconds
     2.5
     """

@@ -32,8 +32,6 @@ _POWER: Final = re.compile(r"e\+?(-?\d+)$")
 def radius_of(ball: acb) -> mpmath.mpf:
     """Return an upper bound on the distance from the midpoint to any point of a ball, in the ball's unit.
 
-    Examples
-    --------
     >>> from flint import acb, arb
     >>> round(float(radius_of(acb(arb(1, 3), arb(0, 4)))), 6)
     5.0
@@ -151,8 +149,6 @@ class Root:
 def complex_latex(printed: RootDecimals) -> str:
     r"""Return a complex number in LaTeX.
 
-    Examples
-    --------
     >>> from symflex.roots.root import RootDecimals
     >>> print(complex_latex(RootDecimals("-1.5", "-2.0e-7", "1e-12")))
     -1.5 - 2.0\cdot 10^{-7}\,\mathrm{j}
@@ -195,8 +191,6 @@ Mode = int | Root | CertifiedRoot | HiddenRoot
 def plain_mode(mode: Mode) -> int | CertifiedRoot:
     """Return a mode as :mod:`symflex.analysis.modes` takes it: its number, or its root.
 
-    Examples
-    --------
     >>> plain_mode(2)
     2
     """

@@ -349,8 +349,6 @@ class PoleCount:
 
     Hidden ones that no gain moves count where they lie in the right half-plane only.
 
-    Examples
-    --------
     >>> PoleCount(2, 0) + PoleCount(0, 1)
     PoleCount(right=2, axis=1)
     """

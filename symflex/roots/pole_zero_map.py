@@ -117,8 +117,6 @@ class StabilityVerdict:
     def beside(self, other: StabilityVerdict) -> StabilityVerdict:
         """Return the verdict on a system that has the poles of two.
 
-        Examples
-        --------
         >>> stable = StabilityVerdict("stable", 0, True)
         >>> stable.beside(StabilityVerdict("marginal", 0, True, "a pole at 0")).sentence
         'marginal, not asymptotically stable: a pole at 0'
@@ -203,8 +201,6 @@ def hidden_poles(at_rest: int, on_axis: float, right: int) -> str:
 
     Where more may lie on the axis, their number is infinite and is not said.
 
-    Examples
-    --------
     >>> hidden_poles(1, 2, 0)
     'a hidden pole at s = 0 and 2 on the imaginary axis'
     >>> hidden_poles(0, 0, 2), hidden_poles(0, 0, 0)
@@ -503,8 +499,6 @@ def search_modes(wanted: int, search: Callable[[int], int]) -> bool:
     ``search`` finds a number of modes and returns how many of those wanted are lacking; whether none is in
     the end is returned.
 
-    Examples
-    --------
     >>> asked = []
     >>> search_modes(3, lambda modes: asked.append(modes) or 3 - modes // 2), asked
     (True, [3, 5, 6])

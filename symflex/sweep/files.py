@@ -113,13 +113,10 @@ def csv_bytes(sweep: Sweep) -> bytes:
     buffer = StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
     writer.writerow(names)
-    writer.writerows(zip(*(_texts(column) for column in columns), strict=True))
-    return buffer.getvalue().encode()
-
-
-def _texts(column: Array) -> Iterator[str]:
     # The shortest decimal that is read back as the same double.
-    return (repr(value) if isinstance(value, float) else str(value) for value in column.tolist())
+    texts = ([repr(x) if isinstance(x, float) else str(x) for x in column.tolist()] for column in columns)
+    writer.writerows(zip(*texts, strict=True))
+    return buffer.getvalue().encode()
 
 
 def parquet_bytes(sweep: Sweep) -> bytes:

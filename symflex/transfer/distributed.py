@@ -507,7 +507,9 @@ def _solve_relations(
     orders = (
         (relations, relations[::-1]) if any(d.kind == "pair" for d in table.dispersions) else (relations,)
     )
-    return min((_solve_in_turn(ring, order, parameters) for order in orders), key=_length)
+    ways = (_solve_in_turn(ring, order, parameters) for order in orders)
+    # Few relations left unsolved, then few terms.
+    return min(ways, key=lambda way: (-len(way), sum(len(f) for _, x in way for f, _ in x.factors)))
 
 
 def _solve_in_many_ways(
@@ -526,11 +528,6 @@ def _solve_in_many_ways(
         if len(solutions) > WAYS:
             break
     return list(solutions.values())
-
-
-def _length(solved: Sequence[tuple[str, Factored]]) -> tuple[int, int]:
-    """Return what is better the smaller it is: relations left unsolved, and terms."""
-    return -len(solved), sum(len(f) for _, formula in solved for f, _ in formula.factors)
 
 
 def _solve_in_turn(

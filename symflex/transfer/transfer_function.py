@@ -342,8 +342,6 @@ def unit_of_response(output: Output, source: Input) -> str:
 def quotient_of_units(above: str, below: str) -> str:
     """Return one unit over another in the words of both, so that m/s over A is not called V/N.
 
-    Examples
-    --------
     >>> quotient_of_units("m/s^2", "N"), quotient_of_units("V", "V"), quotient_of_units("A", "V/m")
     ('m/(N*s^2)', '1', 'A*m/V')
     >>> quotient_of_units("m/s^2", "m/s"), quotient_of_units("m", "m/s^2")

@@ -263,7 +263,8 @@ def modal_form(bound: AnyBoundFunction, kept: KeptRoots, digits: int) -> Approxi
             zeros = _repeated(kept.zeros)
         else:
             above, below = _real_coefficients(num), _real_coefficients(whole)
-            zeros = _zeros_of(num.coeffs()[: len(above)], digits)
+            exact = [exact_fraction(about_zero(c.real)) for c in num.coeffs()[: len(above)]]
+            zeros = _repeated(find_polynomial_roots(RootProblem.from_rationals(exact), digits))
     evaluator = RationalEvaluator(
         start.order,
         complex(start.coefficients[0].mid()),
@@ -321,9 +322,3 @@ def exact_coefficients(bound: AnyBoundFunction) -> tuple[tuple[mpmath.mpf, ...],
     scaled = (acb_poly([c / lead for c in part.coeffs()]) for part in (above, below))
     num, den = (_real_coefficients(part) for part in scaled)
     return num, den
-
-
-def _zeros_of(coefficients: Sequence[acb], digits: int) -> list[acb]:
-    """Return the roots of a real polynomial, from ascending coefficients, by size; pairs stand together."""
-    exact = [exact_fraction(about_zero(c.real)) for c in coefficients]
-    return _repeated(find_polynomial_roots(RootProblem.from_rationals(exact), digits))

@@ -141,8 +141,6 @@ def scan_error(
 ) -> ErrorScan:
     r"""Sample the error of an approximation in a band [Hz], densely about the poles and zeros there.
 
-    Examples
-    --------
     >>> from symflex import pipeline
     >>> model = pipeline.loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/(s + 1)"')
     >>> bound = pipeline.derive_bound(model, [("y", "u")])[0]

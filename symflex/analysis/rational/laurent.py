@@ -15,7 +15,7 @@ Residues, how much of each mode a transfer function contains, are the first coef
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 from math import pi
@@ -54,7 +54,7 @@ from symflex.roots.counting.local_series import (
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
-from symflex.roots.root import GUARD_BITS
+from symflex.roots.root import GUARD_BITS, overlap
 from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 from symflex.transfer.double_value import DOUBLE_BITS
 from symflex.transfer.enclose_kernels import KernelValues
@@ -431,7 +431,8 @@ def residues_at(bound: AnyBoundFunction, poles: Sequence[Root], digits: int) -> 
         source = bound
     for root in poles:
         spend()
-        upper = next((r for r in parts if _are_conjugate(r.root, root)), None)
+        mirrored = replace(root, im=opposite(root.im))
+        upper = next((r for r in parts if not r.root.is_real and overlap(r.root, mirrored)), None)
         if upper is not None:
             parts.append(upper.conjugate(root))
         elif root.is_zero:
@@ -449,11 +450,6 @@ def _at_zero(bound: AnyBoundFunction, root: Root, digits: int) -> PrincipalPart:
         raise UncertifiedError(Diagnostic("SF405", message))
     is_estimate = series.is_estimate or not root.certified
     return PrincipalPart(root, root.enclosure(), series.principal_part, is_estimate)
-
-
-def _are_conjugate(a: Root, b: Root) -> bool:
-    """Tell whether two roots, each apart from all others, are a conjugate pair."""
-    return not a.is_real and bool(a.re.overlaps(b.re)) and bool(a.im.overlaps(opposite(b.im)))
 
 
 BRANCHES = 4  # branches of a wavenumber about a point where it vanishes

@@ -240,8 +240,6 @@ def _size(term: ExponentialTerm, t: arb) -> arb:
 def step_info(terms: Sequence[ExponentialTerm]) -> StepInfo | None:
     """Return the properties of a step response; None if it does not come to rest, or at 0.
 
-    Examples
-    --------
     >>> lag = [ExponentialTerm(acb(0), (acb(2),)), ExponentialTerm(acb(-1), (acb(-2),))]  # 2 - 2 e^-t
     >>> found = step_info(lag)
     >>> float(found.final), round(float(found.rise_time), 9), round(float(found.settling_time), 9)
