@@ -265,8 +265,8 @@ class Signs:
                     left.append(factor)
                 else:
                     nonzero[str(factor)] = factor
-            if not left and sign < 0:
-                return [(polynomial, ">")]
+            if not left and sign < 0:  # for its own signs, or because another condition contradicts it
+                return [(polynomial if self.of_polynomial(polynomial) else self.ring.constant(-1), ">")]
             if len(left) == 1:
                 known[str(left[0])] = sign
             whole = prod(left, start=self.ring.constant(sign))

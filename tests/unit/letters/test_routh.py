@@ -154,6 +154,7 @@ def test_conditions_of_40_models_hold_exactly_where_all_roots_lie_left_of_the_ax
         ("(a*s + b)*(b*s + c)", []),
         ("a*s^2 + b*s + R", ["R > 0"]),
         ("(a - b)*s^2 + c", ["a > b"]),  # else a pair on the real axis
+        ("R*s^2 + b*s - R", ["0 > 1"]),  # R > 0 and -R > 0: never
         ("a*s^4 + b*s^2 + c", ["b^2 > 4*a*c"]),  # the discriminant in s^2
         ("(s + R)^2 + a", ["R > 0"]),
         ("(a - b)^2*s + c", ["a != b"]),
