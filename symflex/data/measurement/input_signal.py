@@ -37,14 +37,16 @@ _UNITS: Final = {
     Fraction(1, 10**3): "ms msec millis millisecond milliseconds",
     Fraction(1, 10**6): "us usec \u00b5s \u03bcs micros microsecond microseconds",
     Fraction(1, 10**9): "ns nanosecond nanoseconds",
+    Fraction(60): "min mins minute minutes minuten",
+    Fraction(3600): "h hr hrs hour hours stunde stunden",
 }
 SECONDS: Final = {word: factor for factor, words in _UNITS.items() for word in words.split()}
-_UNIT: Final = "|".join(SECONDS)
+_UNIT, _LONGER = ("|".join(w for w in SECONDS if (SECONDS[w] > 1) == longer) for longer in (False, True))
 TIME = re.compile(
     r"(?:(?:elapsed|relative|rel|sim|simulation)[ _.]*)?"
     r"(?:t|tout|(?:date|datum)[ _/]*(?:time|zeit|uhrzeit)|uhrzeit|times?|time[ _]?stamp|zeit|temps|"
     r"tiempo|tempo|tid|tijd|\u0432\u0440\u0435\u043c\u044f|\u65f6\u95f4)"
-    rf"(?:[ _/,]*(?:in\b)? *[\[(]?(?P<unit>{_UNIT})[\])]?)?|x_value|"
+    rf"(?:[ _/,]*(?:in\b)? *[\[(]?(?P<unit>{_UNIT}|(?:(?<=[\[(/ ])|(?<=me_))(?:{_LONGER}))[\])]?)?|x_value|"
     rf"(?:in )?(?P<alone>(?!s$){_UNIT}|(?<=in )s)",
     re.I,
 )

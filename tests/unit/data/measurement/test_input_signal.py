@@ -70,7 +70,7 @@ def test_inputs_are_read_from_arrays(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "head", ["X,CH1,Start\nSequence,Volt,0\n", "time [h],u\n", "sample,u\n", "f (Hz),H\n"]
+    "head", ["X,CH1,Start\nSequence,Volt,0\n", "time [cycles],u\n", "sample,u\n", "f (Hz),H\n"]
 )
 def test_what_is_not_seen_to_be_a_time_is_refused(tmp_path, head):
     (tmp_path / "u.csv").write_text(head + rows(","), encoding="utf-8")

@@ -318,6 +318,8 @@ def test_times_of_day_dates_and_times_since_1970_are_read():
         "time,trigger,u,y": [f"{x},{int(x > 1_704_499_200_000)}" for x in milliseconds],
         "millis,u,y": [f"{x}" for x in range(0, 640, 10)],
         "Time,u,y\nms,N,mm": [f"{x}" for x in range(0, 640, 10)],
+        "time_min,u,y": [f"{i / 6000:.9f}" for i in range(64)],
+        "t [h],u,y": [f"{i / 360_000:.12f}" for i in range(64)],
         "time,u,y": [f"{45296.4 + i / 8_640_000:.11f}" for i in range(64)],
     }
     for head, times in cases.items():
