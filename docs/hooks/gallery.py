@@ -51,7 +51,7 @@ FOLDERS: Final = {
     "eppinger1988": "One axis of a robot, and what bends in it",
     "eppinger1988/loops": "Loops around it, of position and of force",
     "classics": "Textbooks",
-    "nonlinear": "Nonlinear equations and energies, about a point of operation",
+    "nonlinear": "Nonlinear equations and energies, about an operating point",
     "tapers": "Members that change along x",
     "frames": "Plane frames",
 }

@@ -18,7 +18,7 @@ from symflex.errors.diagnostic import nearest
 
 FOLDERS: Final[dict[str, str]] = {
     "classics": "Beams, rods, shafts and a car of the textbooks",
-    "nonlinear": "Nonlinear equations and energies, about a point of operation",
+    "nonlinear": "Nonlinear equations and energies, about an operating point",
     "eppinger1988": "Models of a paper on robot flexibility, and its claims",
     "eppinger1988/loops": "Position and force loops around these models",
     "frames": "Plane frames, whose members bend and stretch",

@@ -174,7 +174,7 @@ def comparison_section(models: Sequence[ModelFacts]) -> Section | None:
         words = (
             "Two outputs move together if one differs from the colocated output by at "
             "most 10 degrees of phase and 1 dB. A loop is stable if all closed-loop poles are in the "
-            "left half-plane; the model's chapter says how far the stable gains are proved. The "
+            "left half-plane; the model's chapter states how far the stable gains are proved. The "
             "crossover allowed is the frequency at which the loop gain first falls below one, with half "
             "of the gain at which the loop becomes unstable (a gain margin of 6 dB)."
         )

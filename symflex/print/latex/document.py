@@ -247,7 +247,7 @@ def _hidden_mode(
     times = "" if factor.multiplicity == 1 else f" {_counted(factor.multiplicity, 'time')}"
     return (
         f"{what} cancels between numerator and denominator{times}: {where} {verb} hidden, that is, "
-        "uncontrollable from this input or unobservable at this output."
+        "uncontrollable from this input or unobservable in this output."
     )
 
 

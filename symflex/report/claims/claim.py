@@ -60,7 +60,7 @@ class Claim:
         needs = dict.fromkeys(model_of(name) for check in self.checks for name in check.of)
         missing = [name for name in needs if name not in models]
         if missing:
-            return Finding("not examined", (f"The report has no model {', '.join(missing)}.",))
+            return Finding("not examined", (f"The report does not include {', '.join(missing)}.",))
         try:
             findings = [check.judge(models) for check in self.checks]
         except KeyError as lacking:
@@ -121,7 +121,7 @@ def judge_all(publication: Publication, models: Sequence[ModelFacts]) -> tuple[F
 def verdict_counts(findings: Sequence[Finding]) -> str:
     """Say how many claims have each verdict."""
     counts: Counter[str] = Counter(finding.verdict for finding in findings)
-    return ", ".join(f"{counts[v]} {plural}" for v, (_, plural) in VERDICTS.items() if counts[v])
+    return ", ".join(f"{n} {many if n > 1 else v}" for v, (_, many) in VERDICTS.items() if (n := counts[v]))
 
 
 def claim_section(publication: Publication, findings: Sequence[Finding]) -> Section:

@@ -104,7 +104,7 @@ def motion_section(study: Study) -> ChapterPart | None:
     for name, value in point.values:
         still = name.rstrip("'")
         rest += [", " if rest else "At rest, ", *shown(Name(still), value, "′" * (len(name) - len(still)))]
-    blocks = [text(*rest, ". All else deviates from rest:")] if rest else []
+    blocks = [text(*rest, ". The names below stand for deviations from rest:")] if rest else []
     return ChapterPart("Linear equations", (*blocks, *(text(*shown(e.left, e.right)) for e in point.linear)))
 
 
@@ -148,7 +148,7 @@ def displayed(tf: AnyTransferFunction, form: PrintedForm, label: str) -> tuple[B
     labels = form_labels(tf, form)
     for expression, multiplicity in hidden:
         times = "" if multiplicity == 1 else f" ({multiplicity} times)"
-        why = "its modes are uncontrollable from this input or unobservable at this output."
+        why = "its modes are uncontrollable from this input or unobservable in this output."
         blocks.append(text("Hidden: the factor ", labelled(expression, labels), f" cancels{times}; {why}"))
     return tuple(blocks)
 

@@ -127,7 +127,7 @@ def test_claims_behind_a_link_that_leads_out_are_not_read(tmp_path):
 
 def test_a_claim_about_a_model_or_a_function_that_is_not_there_is_not_examined(tmp_path):
     verdict, evidence = judged(tmp_path, '{ is = "colocated", of = "cart: X/F" }')
-    assert (verdict, evidence) == ("not examined", "The report has no model cart.")
+    assert (verdict, evidence) == ("not examined", "The report does not include cart.")
     verdict, evidence = judged(tmp_path, '{ is = "colocated", of = "cart: Y/F" }', cart=function())
     assert verdict == "not examined"
     assert "Y/F" in evidence

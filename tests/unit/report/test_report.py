@@ -190,7 +190,7 @@ def test_a_nonlinear_model_has_its_linear_equations_before_what_follows_from_the
     path.write_text(PENDULUM)
     rest, equation = motion_section(Study.of(path, "pendulum")).blocks
     said = "".join(r if isinstance(r, str) else r.latex for r in rest.runs)
-    assert said == r"At rest, \theta = q, \tau = \tau_{0}. All else deviates from rest:"
+    assert said == r"At rest, \theta = q, \tau = \tau_{0}. The names below stand for deviations from rest:"
     assert equation.runs[0].latex == r"J s^{2} \theta + w \, \cos(q) \, \theta"
     assert list(SECTIONS).index("motion") < list(SECTIONS).index("equations")
 
