@@ -45,7 +45,7 @@ _UNIT, _LONGER = ("|".join(w for w in SECONDS if (SECONDS[w] > 1) == longer) for
 TIME = re.compile(
     r"(?:(?:elapsed|relative|rel|sim|simulation)[ _.]*)?"
     r"(?:t|tout|(?:date|datum)[ _/]*(?:time|zeit|uhrzeit)|uhrzeit|times?|time[ _]?stamp|zeit|temps|"
-    r"tiempo|tempo|tid|tijd|\u0432\u0440\u0435\u043c\u044f|\u65f6\u95f4)"
+    r"tiempo|tempo|tid|tijd|\u0432\u0440\u0435\u043c\u044f|\u65f6\u95f4)(?:[ _.](?:now|rel|abs|corr\w*))?"
     rf"(?:[ _/,]*(?:in\b)? *[\[(]?(?P<unit>{_UNIT}|(?:(?<=[\[(/ ])|(?<=me_))(?:{_LONGER}))[\])]?)?|x_value|"
     rf"(?:in )?(?P<alone>(?!s$){_UNIT}|(?<=in )s)",
     re.I,
@@ -158,13 +158,13 @@ def named_time(table: TextTable, first: int) -> tuple[list[str], int, Fraction, 
         ways = cut(text, table.delimiter), re.split(r"\s*[,;\t]\s*|\s{2,}|(?<=[\])])\s+", text.strip())
         for names in ways if table.delimiter != " " else ways[::-1]:  # a blank may stand before a unit
             units = [SECONDS.get(word.strip("[]() ").lower()) for word in below] + [None] * len(names)
-            for i, name in enumerate(names[:-1]):
+            for i, name in enumerate(names if names[1:] else ()):
                 match = TIME.fullmatch(name.strip("\"' _"))
                 named = cut(above, table.delimiter)[i : i + 1]
-                if match and match["alone"] and named and TIME.fullmatch(named[0]):
+                if match and match["alone"] and (name is names[-1] or (named and TIME.fullmatch(named[0]))):
                     continue  # a row of units: the names are above
                 if match or (units[i] and _AXIS.fullmatch(name.strip())):
-                    said = (match and (match["unit"] or match["alone"])) or names[i + 1].strip("[]()").lower()
+                    said = (match and (match["unit"] or match["alone"])) or (*names, "")[i + 1].strip("[]()")
                     return names, i, SECONDS.get(said.lower(), units[i] or Fraction(1)), Fraction(0)
         below = cut(text, table.delimiter) if text.strip() else below
     return [], 0, Fraction(1), Fraction(0)

@@ -35,7 +35,7 @@ Real = npt.NDArray[np.float64]
 
 SEARCHED: Final = 300  # lines among which the names of columns and the first row are sought
 BEGIN: Final = 4  # samples by which it is judged where a record begins
-LONG: Final = 100.0  # sampling time [s] from which a time without unit may be in milliseconds or microseconds
+LONG: Final = 2.0  # sampling time [s] from which a time without unit may be in milliseconds or microseconds
 FEWEST_SAMPLES: Final = 32  # fewer make no response
 JITTER: Final = 0.02  # share of the sampling time by which a clock's last digit may move times
 UNEVEN: Final = 0.5  # the same, from which a sample is missing
@@ -46,7 +46,7 @@ SAME: Final = 1 - 1e-12  # correlation from which a channel is a multiple of ano
 _INPUT = re.compile(
     r"(?:u|u_?est|u_?val|v_?in|u_?in|in|inp|f|exc|stim|ref|r|cmd|dac|pwm|duty)(?:[ _]?\d+)?|"
     r"(?:\w+[ _])?(?:input|eingang|entr[eé]e|force|kraft|hammer|impact|excitation|anregung|drive|actuator|"
-    r"stimulus|reference|command|set[ _]?point|torque|moment|effort)(?:[ _]?\w+)?",
+    r"stimulus|reference|command|cmd|desired|target|set[ _]?point|torque|moment|effort)(?:[ _]?\w+)?",
     re.I,
 )
 _MARKER = re.compile(r"(?:\w+[ _])?(?:trigger|trig|tacho\w*|keyphasor|marker|event|gate)(?:[ _]?\w+)?", re.I)
@@ -73,7 +73,7 @@ _ALIKE = re.compile(r"[ _.-]?(?:[xyz]|\d+)$", re.I)
 _OF_AN_INSTRUMENT: Final = {"ch", "channel", "kanal", "ai", "trace", "in", "col", "column"}
 """What channels are called whatever they measure."""
 _FREQUENCY = re.compile(r"freq|fr\u00e9q|omega", re.I)
-_SPEED = re.compile(r"vel|speed|gyro|rate|geschw|vitesse|drehz", re.I)
+_SPEED = re.compile(r"vel|speed|gyro|rate|geschw|vitesse|drehz|angular(?!.?fr)", re.I)
 _SPECTRUM = re.compile(r"\b(?:fft|psd)\b|spectrum|spectral", re.I)
 _IN_BRACKETS = re.compile(r"\s*[\[(](.*?)[\])]\s*$")
 
@@ -143,10 +143,17 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
         names, step = [], float(np.nansum(columns[at])) * float(unit)
     if names:
         times = _seconds(columns[at] * float(unit), guesses) + float(start)
-        channels = [(_plain(c, i), columns[i]) for i, c in enumerate(cells[:width]) if i != at]
+        # Counters and magnitudes of vectors, which are no longer such where they are made even.
+        left = [at, *(i for i, x in enumerate(columns) if np.all(np.diff(x) == 1))]
+        squares = np.sum([x**2 for i, x in enumerate(columns) if i not in left], axis=0)
+        for i, x in enumerate(columns):
+            if width - len(left) > 3 and np.allclose(2 * x**2, squares, 1e-6, 0):  # noqa: PLR2004
+                left.append(i)
+                guesses.append(f"'{cells[i][:30]}' is the magnitude of the others and is left out")
+        channels = [(_plain(c, i), columns[i]) for i, c in enumerate(cells[:width]) if i not in left]
         step, kept = _even(times, table, lines, guesses)
         if step > LONG:
-            guesses.append(f"samples are {step:.6g} s apart; --columns t_us,u,y if that is another unit")
+            guesses.append(f"samples are {step:.6g} s apart; --columns t_ms,u,y, or t_us, for another unit")
         channels = [(c, _resampled(times, x, step) if kept else x) for c, x in channels]
     else:
         assert step is not None

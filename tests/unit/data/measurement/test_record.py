@@ -163,6 +163,8 @@ def test_poles_are_within_their_standard_errors(tmp_path, kind):
         ("Time (s),Hammer (N),Accel (g)", "Hammer", ["Accel"]),
         ("Time Stamp, Velocidad (rad/s), PWM", "PWM", ["Velocidad"]),
         ("Time,ADC,DAC", "DAC", ["ADC"]),
+        ("t_now,velocity_fed,velocity_cmd", "velocity_cmd", ["velocity_fed"]),
+        ("Time,twist.angular.x,twist.angular.z", None, ["twist.angular.x", "twist.angular.z"]),
     ],
 )
 def test_headers_say_which_column_is_what(head, source, outputs):
@@ -173,6 +175,24 @@ def test_headers_say_which_column_is_what(head, source, outputs):
     assert (record.input and record.input[0]) == source
     assert [name for name, _ in record.outputs] == outputs
     assert record.step_s == pytest.approx(1e-3 if "ms" in head else 1.0)
+
+
+@pytest.mark.parametrize(
+    ("head", "columns", "outputs"),
+    [
+        ("volt,tempo_corrigido", (0, 3), ["volt"]),
+        ("sample,time,sensor_value", (5, 3, 0), ["sensor_value"]),
+        ("t,a_x,a_y,a_z,a", (3, 0, 1, 2, 4), ["a_x", "a_y", "a_z"]),
+    ],
+)
+def test_times_stand_anywhere_and_counters_and_magnitudes_are_left_out(head, columns, outputs):
+    random = np.random.default_rng(1)
+    x, times = random.normal(size=(3, 64)), np.arange(64) * 0.01 + random.uniform(0, 0.001, 64)
+    every = np.vstack([x, times, np.linalg.norm(x, axis=0), np.arange(64)])
+    rows = "\n".join(",".join(f"{v:.9g}" for v in row) for row in every[list(columns)].T)
+    record = read_record("a.csv", f"{head}\n{rows}\n".encode(), "a")
+    assert record.input is None and [name for name, _ in record.outputs] == outputs
+    assert record.step_s == pytest.approx(0.01, rel=0.1)
 
 
 def test_a_rate_above_the_columns_is_the_sampling_time():
