@@ -214,7 +214,7 @@ def fit_resonances(
         needed = max(FEWEST_LINES, 4 * (given.modes or 1) + 2)
         if response.values.size < needed:
             message = f"'{response.name}' has {response.values.size} lines; such a fit needs {needed} or more"
-            hint = "its input may contain too few frequencies: a sweep, a step or noise has them all"
+            hint = "a longer record has more lines, and so has an input of more frequencies than a sine"
             raise DataError(Diagnostic("SF605", message, None, hint if response.is_record else None))
     if bases is not None:
         return _fit(measured, tuple(bases), given, (0,))

@@ -152,8 +152,6 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
                 guesses.append(f"'{cells[i][:30]}' is the magnitude of the others and is left out")
         channels = [(_plain(c, i), columns[i]) for i, c in enumerate(cells[:width]) if i not in left]
         step, kept = _even(times, table, lines, guesses)
-        if step > LONG:
-            guesses.append(f"samples are {step:.6g} s apart; --columns t_ms,u,y, or t_us, for another unit")
         channels = [(c, _resampled(times, x, step) if kept else x) for c, x in channels]
     else:
         assert step is not None
@@ -189,6 +187,8 @@ def _seconds(times: Real, guesses: list[str]) -> Real:
     if _DAYS[0] < begin < _DAYS[1] and end - begin < 1 and 0 < (end - begin) / times.size < 1 / DAY:
         guesses.append("times are read as days, as workbooks count them; --columns t_s,u,y for seconds")
         return (times - begin) * DAY
+    if (step := (end - begin) / times.size) > LONG:
+        guesses.append(f"samples are {step:.4g} s apart; --columns t_ms,u,y, or t_us, for another unit")
     return times
 
 

@@ -195,6 +195,16 @@ def test_times_stand_anywhere_and_counters_and_magnitudes_are_left_out(head, col
     assert record.step_s == pytest.approx(0.01, rel=0.1)
 
 
+def test_a_time_is_not_suggested_for_a_frequency_and_may_have_another_unit(tmp_path):
+    y = np.random.default_rng(1).normal(size=(64, 2))
+    np.savez(tmp_path / "a.npz", t=np.arange(64) * 0.01, acc=y)
+    with pytest.raises(DataError, match="--columns t=t,u=NAME,y=NAME"):
+        read_measurement(tmp_path / "a.npz")
+    path = written(tmp_path, *y.T, head="22380416,1,2", times=22380416 + 2044 * np.arange(1, 65))
+    for asked, is_said in (("t,u,y", True), ("t_us,u,y", False)):
+        assert any("t_us" in guess for guess in read_measurement(path, asked)[0].guesses) is is_said
+
+
 def test_a_rate_above_the_columns_is_the_sampling_time():
     rows = "\n".join(f"{np.sin(i):.5f},{np.cos(i):.5f}" for i in range(64))
     for line, step in (("Sampling rate: 2 kHz", 5e-4), ("Sample interval = 0.5 ms", 5e-4), ("dt,0.01", 0.01)):
