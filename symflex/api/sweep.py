@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, repr=False, slots=True)
 class Sweep(sweep_package.Sweep):
-    """What was found at all points of a design, which draws itself. See :class:`symflex.sweep.Sweep`."""
+    """The results at all points of a design, with a figure of them. See :class:`symflex.sweep.Sweep`."""
 
     def plot(
         self,

@@ -320,7 +320,7 @@ class StabilityMap(Printed):
         return (self.margin_beyond or 0.0) * 180 / pi
 
     def change(self, index: int) -> int:
-        """Return by how many the poles in the right half-plane grow at a boundary, as the gain grows."""
+        """Return the change in the number of right half-plane poles at a boundary, as the gain grows."""
         return self.intervals[index + 1].poles.right - self.intervals[index].poles.right
 
 

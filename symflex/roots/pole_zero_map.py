@@ -313,8 +313,8 @@ class PoleZeroMap:
     verdict : StabilityVerdict
         Whether the model is stable, judged by all poles, not only those in the region.
     unstable : tuple of Root
-        Poles in the right half-plane outside the requested region. Where none was requested but a number
-        of modes, they are among ``poles``, wherever they lie.
+        Poles in the right half-plane outside the requested region. If only a number of modes was
+        requested, they are among ``poles``, wherever they lie.
     """
 
     tf: str

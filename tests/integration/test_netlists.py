@@ -129,7 +129,7 @@ def test_netlists_are_read_in_the_encodings_of_ltspice(encoding, tmp_path):
         "V1 in 0 AC 1\nXU1 out o out opamp Aol=1e9\nR1 in o 1k\nC1 o 0 1u\n.print ac v(out)",
         "V1 in 0 AC 1\nXU1 in n p m out level.2 Avol=2 Rin=1k Rout=1k Slew=1\nR1 n 0 1k\nC1 out 0 1u",
         "V1 Net-(R1-Pad1) 0 AC 1\nR1 Net-(R1-Pad1) out {log10((10))*1k}\nC1 out 0 1u",  # KiCad
-        "V1 in 0 AC 1\nR1 in x 0\nR2 x out 1k\nC1 out 0 1u",
+        'V1 in 0 AC 1\nR1 in x 0\nR2 x out 1k tol=1 pwr=0.1\nC1 out 0 1u V=25 Rser=0 mfg="any"',
     ],
 )
 def test_other_programs_write_a_low_pass_in_their_ways(body, tmp_path):

@@ -291,7 +291,7 @@ class RationalApproximation(Printed, Approximant, RationalFunction):
 
     @property
     def order_at_zero(self) -> int:
-        """The order of the zero of G at s = 0; negative of a pole."""
+        """The order of the zero of G at s = 0; negative for a pole."""
         return self.evaluator.order
 
     @property

@@ -127,7 +127,7 @@ class EnclosedResponse:
 
     @property
     def comparison(self) -> str:
-        """The rms of the measured output less the values, in words; empty where nothing was measured."""
+        """The rms difference between measured output and values, in words; empty if nothing was measured."""
         if self.measured is None:
             return ""
         name, own = self.measured

@@ -72,7 +72,7 @@ def read_measurement(
         A regular file of at most 50 MB; the end of its name gives its format, see :data:`READERS`. Files
         with other endings are read as text in columns.
     columns : str
-        What the columns are, if the file does not say or is wrong: words such as ``f,re,im`` or
+        What the columns are, if the file does not state it or is wrong: words such as ``f,re,im`` or
         ``f_khz,-,mag_db,phase_deg`` for text and matrices, ``f=NAME,h=NAME`` for named arrays, ``s21`` or
         ``z11`` for Touchstone files; ``t,u,y`` for records in time.
     estimate : Estimate, optional

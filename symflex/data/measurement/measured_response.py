@@ -53,7 +53,7 @@ class MeasuredResponse:
     is_magnitude : bool
         True when no phase was measured: that of the values belongs to a minimum-phase function.
     cut_off_s : float, optional
-        When the record of a step was cut off, whose last level is that of its last sample.
+        Length [s] of the record of a step that was cut off, whose last sample stands for the final level.
 
     Notes
     -----

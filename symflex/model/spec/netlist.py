@@ -54,7 +54,8 @@ IGNORED: Final = frozenset(
 )
 FIRST, LAST = (".param", ".params", ".global"), (".print", ".plot", ".probe", ".tf", ".detector")
 HARMLESS: Final = frozenset(
-    "ic tc tc1 tc2 noisy noiseless noisetemp noiseflow dcvar dcvarlot vinit iinit".split()
+    "ic tc tc1 tc2 noisy noiseless noisetemp noiseflow dcvar dcvarlot vinit iinit "
+    "tol pwr irms ipk mfg pn type v".split()
 )
 """What may stand behind the value of a component without changing its small signals."""
 APART: Final = "write what it stands for as components of their own"
@@ -331,13 +332,13 @@ class _Netlist:
         while rest and (rest[0] == "=" or rest[0].upper() in (letter, "VALUE")):
             rest = rest[1:]
         if not rest:
-            what = "value" if letter in "RLCK" else "gain"
-            raise line.refuse(f"'{line.words[0][:40]}' has no {what}", f"write the nodes, then the {what}")
+            raise line.refuse(f"'{line.words[0][:40]}' has no value", "write the nodes, then the value")
+        absent = {k for k, v in _assigned(["", *rest]).items() if k[0] in "rlc" and not v.strip("0.")}
         has_tc = "tc" in (low := [w.lower() for w in rest])
         for before, word in pairwise(low):
             is_read = "=" in (before, word) or (has_tc and NUMBER.fullmatch(word))
             extra = before if word == "=" else word
-            if (not is_read or word == "=") and extra not in HARMLESS:
+            if (not is_read or word == "=") and extra not in HARMLESS | absent:
                 hint = "write the nodes, then one value, with a decimal point"
                 hint = APART if extra[0].isalpha() else hint
                 raise line.refuse(f"'{extra[:40]}' of '{line.words[0][:40]}' is not read", hint)
@@ -431,8 +432,7 @@ class _Netlist:
                 raise line.refuse("three windings on one core are not read", "couple inductors in pairs")
             coupled |= {p.lower() for p in pair}
             (first, a, l_1), (second, b, l_2) = (self.windings[p.lower()] for p in pair)
-            kept = [e for e in self.circuit.elements if e[0] not in (first, second)]
-            self.circuit.elements = kept
+            self.circuit.elements = [e for e in self.circuit.elements if e[0] not in (first, second)]
             is_number = [x not in self.circuit.parameters for x in (l_1, l_2)]
             if any(is_number):  # an expression has no unit
                 self.circuit.parameters["one_H"] = "1 H"
