@@ -369,11 +369,7 @@ class SweepOptions:
         None, "--band", **TWO, help='Only this band of frequencies: 0.1 1000, "1 kHz".'
     )
     count: int | None = option(
-        None,
-        "--count",
-        least=2,
-        most=100_000,
-        help=f"Number of frequencies of a response.  [default: {FREQUENCIES}]",
+        None, "--count", least=2, most=100_000, help=f"Frequencies of a response.  [default: {FREQUENCIES}]"
     )
     gain: str | None = option(
         None, "--gain", metavar="K", help="margins: the parameter that is the loop's gain."
@@ -582,11 +578,7 @@ class FitOptions:
         help="Start of the fit; auto tries all and keeps the best.",
     )
     criterion: str = option(
-        "bic",
-        "--criterion",
-        choices=("bic", "aicc"),
-        **SHOWN,
-        help="Criterion that chooses the number of resonances.",
+        "bic", "--criterion", choices=("bic", "aicc"), **SHOWN, help="Chooses the number of resonances."
     )
     band: tuple[float, float] | None = option(
         None, "--band", type=float, **TWO, help="Use only lines between these frequencies [Hz]."
@@ -610,11 +602,7 @@ class FitOptions:
     )
     step_hz: float | None = option(None, "--step", type=float, least=0, help="Spacing of the lines [Hz].")
     averages: float | None = option(
-        None,
-        "--averages",
-        type=float,
-        least=1,
-        help="Number of independent averages, if the file does not give it.",
+        None, "--averages", type=float, least=1, help="Number of averages, if the file does not give it."
     )
     window: str | None = option(None, "--window", **WINDOW_OF_DATA)
     segments: int | None = option(None, "--segments", **SEGMENTS)
@@ -666,12 +654,7 @@ class MeasureOptions:
         0.03, "--noise", type=float, least=0, **SHOWN, help="Ratio of sensor noise to signal, rms."
     )
     rolloff: float | None = option(
-        5000.0,
-        "--rolloff",
-        type=float,
-        least=0,
-        **SHOWN,
-        help="Corner of the accelerometer [Hz]; 0 for none.",
+        5000.0, "--rolloff", type=float, least=0, **SHOWN, help="Corner of the accelerometer [Hz], or 0."
     )
     seed: int = option(1, "--seed", least=0, **SHOWN, help="Seed of the random numbers.")
     columns: str = option("", "--columns", metavar="WORDS", help="Columns of a record in time: t,u,y.")
@@ -716,12 +699,7 @@ class ReportOptions:
         help="Date to print, or 'none'.  [default: today, or SOURCE_DATE_EPOCH]",
     )
     jobs: int | None = option(
-        None,
-        "-j",
-        "--jobs",
-        least=1,
-        most=64,
-        help="Models to compute at once.  [default: one per processor]",
+        None, "-j", "--jobs", least=1, most=64, help="Models at once.  [default: one per processor]"
     )
 
 

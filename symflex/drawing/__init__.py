@@ -13,7 +13,7 @@ from symflex.drawing.cells import SPACINGS
 from symflex.drawing.diagram import diagrams, statements
 from symflex.drawing.fields import FieldRow, field_rows
 from symflex.drawing.frames import frame_plan, name_of
-from symflex.drawing.geometry import Drawing, Extent, Placed
+from symflex.drawing.geometry import Drawing, Extent, Placed, upright
 from symflex.drawing.joins import Join, joined
 from symflex.drawing.lettering import Labels, column_of, filled
 from symflex.drawing.order import abbreviated
@@ -111,7 +111,9 @@ def _networks(content: _Content, spacing: Spacing) -> Iterator[_Row]:
             own = tuple(n for n in network.nodes if n in nodes)
             network = replace(network, nodes=own, parts=tuple(others), marks=marks, spans=())
         shortened, gone = abbreviated(network, domains)
-        yield lay_out(shortened, domains, spacing), gone
+        row: Sequence[Placed] = lay_out(shortened, domains, spacing)
+        is_up = content.model.drawing.is_up and all(domains[n] == "translation" for n in shortened.nodes)
+        yield upright(row) if is_up else row, gone
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 Point = tuple[float, float]
 THIN, LINE, BOLD, MEMBER = 0.5, 0.8, 1.6, 2.6
@@ -167,6 +167,34 @@ class Placed:
         return self._mapped(turned, texts)
 
 
+def upright(items: Sequence[Placed]) -> Sequence[Placed]:
+    """Return parts of a row turned so that x runs upwards, or as they are where texts would cover any."""
+    runs: list[list[Placed]] = []  # texts side by side stay there
+    for item in items:
+        before, first = runs[-1][-1].texts if runs else (), item.texts if not item.strokes else ()
+        gap = first[0].x - before[-1].box.x1 if before and first and before[-1].y == first[0].y else NEXT
+        runs = [*runs[:-1], [*runs[-1], item]] if 0 < gap < NEXT else [*runs, [item]]
+    standing: list[Placed] = []
+    for run in runs:
+        own = union(around(s.points) for i in items if i.name == run[0].name for s in i.strokes)
+        box = union(t.box for item in run for t in item.texts)
+        (x, y), longer = box.centre, (box.width - box.height) / 2
+        aside, along = ((z > high) - (z < low) for z, low, high in ((y, own.y0, own.y1), (x, own.x0, own.x1)))
+        # Above an arrow a long text ends not far beyond it.
+        dx = -y - (aside * longer if aside else max(0.0, box.width / 2 - BEYOND) * along)
+        dy = x if aside else x - along * longer
+        standing += [
+            replace(i.rotated(0, 1), texts=tuple(t.moved(dx - x, dy - y) for t in i.texts)) for i in run
+        ]
+    texts = [(i.name, t.box) for i in standing for t in i.texts]
+    strokes = [(i.name, b) for i in standing for b in replace(i, texts=()).extents]
+    is_crossed = any(t.overlaps(b) for name, t in texts for other, b in strokes if other != name)
+    return (
+        items if is_crossed or any(a.overlaps(b) for (_, a), (_, b) in combinations(texts, 2)) else standing
+    )
+
+
+NEXT, BEYOND = 3.0, 6.0  # between the texts of one mark, and beyond its arrow [points]
 MOST_CORNERS, LARGE = 6, 36.0  # largest slanted member; with more corners, a symbol or a taper [points]
 _SHORT, _PIECE = 20.0, 3.0
 

@@ -73,18 +73,9 @@ class LumpedFactor:
             parts[is_odd][place] = number * (-1) ** half
         even, odd = (ring.context.from_dict(part) for part in parts)
         common = even.gcd(odd) if len(odd) else even
-        return cls(
-            bound,
-            factor,
-            tuple(constants[i] for i in used),
-            ring,
-            even / common,
-            odd / common if len(odd) else odd,
-            common,
-            loop,
-            functions,
-            (limits[0] or Fraction(0), limits[1] or Fraction(0)),
-        )
+        kept, halves = tuple(constants[i] for i in used), (even / common, odd / common if len(odd) else odd)
+        ends = limits[0] or Fraction(0), limits[1] or Fraction(0)
+        return cls(bound, factor, kept, ring, *halves, common, loop, functions, ends)
 
     def _moves(self, *polynomials: fmpz_mpoly) -> bool:
         """Tell whether one of some polynomials depends on the gain."""

@@ -171,8 +171,8 @@ def read_drawing(reader: Reader, section: TableValue | None, model: Model) -> Dr
     """Return how the model is to be drawn."""
     if section is None:
         return DrawingHints()
-    reader.keys(section, ("order", "symbols", "rollers"), "[drawing]")
-    order, rollers, table = (section.get(key) for key in ("order", "rollers", "symbols"))
+    reader.keys(section, ("order", "symbols", "rollers", "up"), "[drawing]")
+    order, table = section.get("order"), section.get("symbols")
     nodes = [n.name for n in model.nodes]
     listed: list[str] = []
     for text in (reader.strings(order, "order of [drawing]", "an array of nodes") or ()) if order else ():
@@ -180,8 +180,12 @@ def read_drawing(reader: Reader, section: TableValue | None, model: Model) -> Dr
         if text.value in listed:
             reader.note("SF213", f"node '{text.value[:64]}' appears twice in order", text.span)
         listed.append(text.value)
-    if rollers and not isinstance(rollers.value, BooleanValue):
-        reader.misfit("rollers of [drawing] must be true or false", rollers.value)
+    switches: dict[str, bool] = {}
+    for entry in filter(None, (section.get("rollers"), section.get("up"))):
+        if isinstance(entry.value, BooleanValue):
+            switches[entry.key] = entry.value.value
+        else:
+            reader.misfit(f"{entry.key} of [drawing] must be true or false", entry.value)
     symbols: list[tuple[str, str]] = []
     shown = reader.table(table, "symbols of [drawing]", 'as in { pinion = "rack" }') if table else None
     turning = [e.name for e in model.elements if e.element.type_name == "transformer"]
@@ -193,8 +197,8 @@ def read_drawing(reader: Reader, section: TableValue | None, model: Model) -> Dr
             reader.note("SF208", f"unknown symbol '{kind.value[:60]}' of '{entry.key}'", kind.span, hint)
         elif kind is not None:
             symbols.append((entry.key, kind.value))
-    has_rollers = rollers.value.value if rollers and isinstance(rollers.value, BooleanValue) else None
-    return DrawingHints(tuple(listed), tuple(symbols), has_rollers)
+    rollers, is_up = switches.get("rollers"), switches.get("up", False)
+    return DrawingHints(tuple(listed), tuple(symbols), rollers, is_up)
 
 
 def _check_among(reader: Reader, text: Text, known: Sequence[str], what: str) -> bool:

@@ -305,6 +305,7 @@ class DrawingHints:
     order: tuple[str, ...] = ()  # nodes from left to right
     symbols: tuple[tuple[str, str], ...] = ()  # transformers with what they are drawn as
     rollers: bool | None = None  # below masses; None if that is left to the drawing
+    is_up: bool = False  # what moves in translation moves upwards
 
 
 @dataclass(frozen=True, slots=True)

@@ -290,5 +290,6 @@ def _drawing() -> Schema:
         "order": _said({"type": "array", "items": TEXT}, "nodes from left to right"),
         "symbols": _said(symbols, "how transformers are drawn"),
         "rollers": {"type": "boolean", "description": "whether masses stand on rollers"},
+        "up": {"type": "boolean", "description": "whether what moves in translation moves upwards"},
     }
     return {**_closed(keys), "description": "how the model is drawn"}

@@ -184,16 +184,8 @@ def read_label(latex: str) -> Label | None:
         return None
     if not whole.atoms:
         return None
-    return Label(
-        latex,
-        whole.size,
-        whole.is_wordy,
-        whole.has_superscript,
-        whole.is_sum,
-        whole.is_product or whole.atoms > 1,
-        whole.subscript,
-        whole.mathml(),
-    )
+    marks = whole.has_superscript, whole.is_sum, whole.is_product or whole.atoms > 1
+    return Label(latex, whole.size, whole.is_wordy, *marks, whole.subscript, whole.mathml())
 
 
 _STACKED: Final = 22  # characters in a line of a stacked name

@@ -365,3 +365,16 @@ def test_a_ring_is_a_chain_with_one_spring_above_it():
     drawing = sound("\n".join(("symflex = 1\n[elements]", *lines, ends)))
     springs = [item(drawing, "element", f"k_{i}").box.centre[1] for i in range(6)]
     assert sum(y > item(drawing, "element", "m_0").box.y1 for y in springs) == 1
+
+
+def test_a_car_stands_on_its_road_and_a_row_whose_labels_would_cross_stays_level():
+    text = (ROOT / "derivations/classics/quarter_car.toml").read_text()
+    stop = 'stop = { type = "spring", between = ["body", "axle"], k = "7 kN/m" }\ntyre  '
+    third = text.replace("tyre  ", stop).replace('b = "c_s"', 'b = "1500 N*s/m"')
+    for specification, is_upright in ((text, True), (text.replace("up = true", ""), False), (third, False)):
+        drawing = drawing_of(pipeline.loads(specification))
+        boxes = {i.name: i.box for i in drawing.items if i.kind == "element" and i.strokes}
+        places = [boxes[name].centre[is_upright] for name in ("tyre", "axle", "body")]
+        assert places == sorted(places), specification
+        assert len({round(boxes[name].centre[not is_upright]) for name in ("axle", "body")}) == 1
+        assert not overlaps(drawing)

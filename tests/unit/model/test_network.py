@@ -213,6 +213,7 @@ def test_a_hint_that_cannot_be_followed_is_refused():
         ('order = ["x", "x"]', "SF213"),
         ("order = 3", "SF206"),
         ('rollers = "yes"', "SF206"),
+        ('up = "yes"', "SF206"),
         ('colour = "red"', "SF207"),
         ('symbols = { M = "rack" }', "SF210"),
         ('symbols = "rack"', "SF206"),
