@@ -208,8 +208,8 @@ def test_a_loop_of_signals_begins_at_its_command_and_is_closed_on_a_page():
 def test_the_force_that_an_imposed_motion_takes_is_an_arrow_of_its_own():
     drawing = drawing_of(pipeline.load(ROOT / "derivations/classics/quarter_car.toml"))
     force, tyre = place(drawing, "output", "F_road"), place(drawing, "element", "tyre")
-    assert force.x1 <= tyre.x0
-    assert force.y0 < (tyre.y0 + tyre.y1) / 2 < force.y1
+    assert force.y1 <= tyre.y0
+    assert force.x0 < (tyre.x0 + tyre.x1) / 2 < force.x1
     assert not force.overlaps(place(drawing, "input", "z_road"))
 
 
