@@ -177,7 +177,7 @@ def moved_over(whole: Sequence[Term], gone: Sequence[Term], root: acb, halves: S
     For ``|y - 1| <= R`` the slope in y has along that at 1 a real part of at least ``2 |slope| - N'(R)``,
     where N adds up by powers of y - 1 what all terms are at most, and M those that go. So a root lies within
     ``N(0)`` over it of 1, and the one without these terms within ``M(R)`` over it of that, if both together
-    are less than R (Rouche).
+    do not exceed R (Rouche).
     """
     own, without = ([(n, v * root**n, m) for n, v, m in terms] for terms in (whole, gone))
     every = range(len(halves))
@@ -205,7 +205,7 @@ def moved_over(whole: Sequence[Term], gone: Sequence[Term], root: acb, halves: S
         spend()
         floor = 2 * abs(slope) - near.derivative()(reach)
         needed = (near[0] + moved(reach)) / floor
-        if floor > near[0] and needed < reach:
+        if floor > near[0] and needed <= reach:
             return upper(moved(reach) / (floor - near[0]))
         reach = (needed * arb("1.1")).upper()
     return inf

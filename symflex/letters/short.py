@@ -292,8 +292,8 @@ def _apart(tf: TransferFunction, way: Way, letters: _Letters, roots: Maps) -> Ap
     """Return how far a short function is from the other, also over a box."""
     (short, _, images, _), own, box = way, bind(tf), letters.box
     band = band_of(own, roots[0])
-    if not box:
-        return distance(own, bind(short), roots)
+    if not box or tf.model.root is not None:
+        return distance(own, bind(short), roots, over_box=(inf, inf) if box else (None, None))
     fixed = tuple((name, partial(arb, ball(low).union(ball(high)))) for name, (low, high) in box.items())
     others = tuple((p.name, p.value) for p in tf.model.parameters if p.value and p.name not in box)
     kernels = BoundTransferFunction(tf, others, tf.ratio, (), tf.kernels, fixed=fixed).kernel_values()
@@ -304,8 +304,7 @@ def _apart(tf: TransferFunction, way: Way, letters: _Letters, roots: Maps) -> Ap
         return prod((at_centre(1 + kernels.value(x, at)) ** -n for x, n in lost), start=acb(1))
 
     with precision(BITS):
-        of_s = tf.model.root is None
-        moves = [(n, letters.displacement(x, y.expand(), band[1]) if of_s else inf) for x, y, n in images]
+        moves = [(n, letters.displacement(x, y.expand(), band[1])) for x, y, n in images]
         bands, where = alike(quotient, band, COARSE)
     most = [max((x for n, x in moves if n * sign > 0), default=0.0) for sign in (-1, 1)]
     apart, facts = distance(own, bind(short), roots, over_box=most), {"within_1_db_over_spread_hz": bands}
@@ -374,9 +373,9 @@ def shortened(
     over = f", over the spread by {percent(changes[1])}" if box else ""
     said = [f"{terms[0]} of {terms[1]} terms; coefficients change by at most {percent(changes[0])}{over}"]
     if short is tf:
-        stay = f": all {terms[1]} stay" if terms[1] > 1 else ""
-        longer = [f"with {fewest} terms the print would be longer"] * (fewest < terms[1])
-        said = [f"no term can be dropped within {100 * float(most):g} %{stay}", *longer]
+        stay = f"no term can be dropped within {100 * float(most):g} %: all {terms[1]} stay"
+        longer = f"all {terms[1]} terms stay: with {fewest} the print would be longer"
+        said = [longer if fewest < terms[1] else stay if terms[1] > 1 else stay.partition(":")[0]]
     static, after = None, bind(short)
     if own.is_rational:
         with precision(BITS):

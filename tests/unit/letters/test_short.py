@@ -159,6 +159,19 @@ def test_roots_that_may_merge_over_the_spread_are_not_bounded():
     assert any("over the spread not bounded" in line for line in form.approximation.said)
 
 
+def test_roots_from_which_a_term_of_value_zero_is_dropped_stay():
+    form = shortened(function("u/(s + a + d)", a=(2, 0.1), d=0), Fraction(1, 100))[1]
+    assert form.approximation.facts["poles"]["spread"] == 0
+
+
+def test_of_roots_of_s_nothing_is_said_over_a_spread():
+    # at s = 10 j a resonance moves, which no sqrt(s) on the imaginary axis meets
+    values = {"a": (1, 0.05), "b": (0.01, 0.05), "w": (100, 0.05), "d": (0.5, 0.05)}
+    form = shortened(function("u*(sqrt(s) + a)/(s^2 + b*s + w + d)", **values), Fraction(2, 100))[1]
+    assert "within_1_db_over_spread_hz" not in form.approximation.facts
+    assert form.approximation.facts["poles"]["spread"] is None
+
+
 def test_a_formula_in_which_every_term_counts_is_said_to_stay():
     form = shortened(function("u/(a*s + b)", a=1, b=2), Fraction(1, 100))[1]
     assert form.approximation.said == ("no term can be dropped within 1 %: all 2 stay",)
