@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from math import inf
 
 from symflex import equations as equations_layer
-from symflex.algebra import LAPLACE, KernelTable, terms_of
+from symflex.algebra import KernelTable, terms_of
 from symflex.budget import spend, uncollected
 from symflex.equations import Equations
 from symflex.equations.elimination import expanded_terms, explain_singular, is_singular
@@ -37,9 +37,8 @@ EXPANDED_TERMS = 5_000  # of a closed determinant beyond which nobody reads it: 
 EXPANDED_PRODUCTS = 500  # with kernels: four beams on springs have 900, or 1,500 lines, three 120
 READABLE_TERMS = 100  # of a formula of members beyond which its steps say more: two columns of a page
 CODE_PRODUCTS = 8  # of numeric code of members: two beams at an angle have 12, and 90 kB of code
-QUICK_PRODUCTS = 50
-"""The same, beyond which roots are found faster without the expanded form: two links with a motor have 88.
-Below, damping may need it: with 12 or 42 products a network's poles were not certified, 3 times as slowly."""
+QUICK_PRODUCTS = 12  # of members beyond which equations are quicker: a portal frame has 16, a bent arm 12
+VERDICT_PRODUCTS = 50  # of a formula that is asked for a verdict where the equations tell none
 CODE_MEMBERS = 4  # members up to which code of a formula keeps its digits; ten equal spans lose all
 MOST_PRODUCTS = 10_000  # beyond which nothing fits into memory: five beams have 8,000, six 70,000
 UNASKED = Terms(EXPANDED_TERMS, MOST_PRODUCTS)  # of a form not asked for, counted as it is made
@@ -254,10 +253,7 @@ def derive_for_roots(
     if is_small and (expanded := _expanded_unless_large(model, pairs, None)) is not None:
         return expanded if is_named else _with_wavenumbers(model, pairs, expanded)
     equations = assemble_sparse(with_numbers(model, in_kernels=True))
-    # Roots accumulate at a finite s where a law of waves has a pole, as Kelvin and Voigt's.
-    laws = (x for c in equations.continua for row in c.system.matrix for x in row)
-    is_quick = not (is_explained or any(x.denominator().depends_on(LAPLACE) for x in laws))
-    most = QUICK_PRODUCTS if is_quick else EXPANDED_PRODUCTS
+    most = EXPANDED_PRODUCTS if is_explained else QUICK_PRODUCTS
     if not is_small and _expanded_terms(equations, pairs[0]) <= most:
         expanded = _expanded_unless_large(model, pairs, UNASKED)
         if expanded is not None:
@@ -272,7 +268,7 @@ def derive_if_small(
     if _may_be_large(model) and _expanded_terms(assemble_sparse(model), pair) > MOST_PRODUCTS:
         return None
     (expanded,) = _expanded_unless_large(model, [pair], UNASKED) or (None,)
-    is_slow = expanded is not None and _kernel_products(expanded.source) > QUICK_PRODUCTS
+    is_slow = expanded is not None and _kernel_products(expanded.source) > VERDICT_PRODUCTS
     return None if is_quick and is_slow else expanded
 
 
