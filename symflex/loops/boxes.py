@@ -24,6 +24,7 @@ from flint import acb, acb_series, arb, fmpz_mpoly
 from symflex.algebra import LAPLACE
 from symflex.balls import Value, at_centre, ball, current_bits, precision
 from symflex.budget import spend
+from symflex.errors import ModelError
 from symflex.expressions import names_among
 from symflex.model import ExactValue, Model
 from symflex.roots.distributed.far_out import right_tail
@@ -37,6 +38,7 @@ from symflex.transfer.of_model import derive_nameless
 BITS = 64  # precision of values on boxes, which are far wider
 LOWEST = 1e-6  # radius from which one is sought beyond which no root is on the right [rad/s]
 OCTAVES = 24  # pieces of the axis at first, each half as high as the next; the lowest begins at 0
+MOST_OPEN = 64  # pieces left open after which others stay as they are: halves of the box leave fewer
 NEARLY = 1 / 8  # share of a value that a box may leave and this still be as good as 0
 
 Ends = tuple[Fraction, Fraction]
@@ -131,7 +133,13 @@ class CharacteristicFunction:
 
     def _end(self, box: Box) -> float | str:
         bound = self._bound(self.tf, box)
-        ends = [right_tail(bound, (f,), (acb(1),), LOWEST) for f in self.factors]
+        try:
+            ends = [right_tail(bound, (f,), (acb(1),), LOWEST) for f in self.factors]
+        except ModelError as error:
+            # A function such as tan has a value in the middle, if only with many bits.
+            with precision(4 * BITS):
+                self.kernels(self.tf, tuple(((low + high) / 2,) * 2 for low, high in box))
+            return error.diagnostics[0].message
         unknown = [end for end in ends if isinstance(end, str)]
         return unknown[0] if unknown else max(map(float, ends), default=0.0)
 
@@ -180,7 +188,7 @@ class CharacteristicFunction:
             pieces = [(pieces[0][0], pieces[last][1]), *pieces[last + 1 :]]
         pending = list(pieces[::-1])
         start, way = map(acb, path)
-        while pending:
+        while pending and len(left) < MOST_OPEN:
             spend()
             low, high = pending.pop()
             point = (low + high) / 2
@@ -226,7 +234,7 @@ class CharacteristicFunction:
                 pending.append((begin, end))
             else:
                 pending += [((begin + end) / 2, end), (begin, (begin + end) / 2)]
-        return left
+        return left | {piece: ([0.0 for _ in slopes.box], Line()) for piece in pending[::-1]}
 
     def kernels(self, tf: TransferFunction, box: Box, along: str = "") -> KernelValues:
         """Return the evaluator for parameters anywhere in a box, to first order in one of them."""

@@ -43,6 +43,7 @@ MOST_HALVINGS = 9  # halvings of each range: 4,096 cells along it
 SLENDER = 8  # how many times longer than wide a box may be, in parts of ranges, until its length is halved
 SMALLEST = 5e-4  # share of the smallest region in which poles are counted; others stay undecided
 ROUNDING = 1e-12  # far more than doubles round of a few numbers of the size of one
+HOPELESS = 256  # boxes after which the search ends if poles have no bound in any
 MIXED = -2  # mark of boxes whose cells differ
 COUNT_DIGITS = 10  # digits of poles of which only the number is asked for
 Word = Literal["stable", "marginal", "unstable", "undecided"]
@@ -243,6 +244,8 @@ def find_chart(
     try:
         with entered_budget().share(SEARCH).entered():
             while pending and still_open > resolve * free.size:
+                if len(pending) > HOPELESS and not any(box.is_bounded for box in pending) and not free.any():
+                    break
                 for box in function.halves(pending[0]):
                     sides = list(zip(ranges, box.box, strict=True))
                     parts = [int((high - low) / (b - a)) for (low, high), (a, b) in sides]

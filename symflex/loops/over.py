@@ -152,6 +152,7 @@ def find_intervals(
     bits, reasons = bits_for_digits(digits) + BITS, list[str]()
     decided: list[Ends] = []
     gaps: list[OpenBox] = []
+    wide: list[OpenBox] = []  # in which more than one boundary may lie
     pending = [function.whole((limits,))]
     try:
         while pending:
@@ -170,14 +171,15 @@ def find_intervals(
                 if len(row) > MOST_GAPS:
                     ends = f"{float(low):.6g} and {float(high):.6g}"
                     reasons.append(f"it could not be decided whether poles meet the axis between {ends}")
-                    gaps += row
+                    wide += row
                     pending = [box for box in pending if box not in row]
     except BudgetError as error:
         reasons.append(error.diagnostics[0].message)
+        wide += pending
     # The ends do not belong to the range: there the order may be lower, or a pole meet the axis.
     rims = {*limits}
-    inside = [gap for gap in gaps if not rims & {*gap.box[0]}]
-    unknown = [box.radius for box in (*inside, *pending) if isinstance(box.radius, str)]
+    inside = [gap for gap in (*gaps, *wide) if not rims & {*gap.box[0]}]
+    unknown = [box.radius for box in inside if isinstance(box.radius, str)]
     reasons += dict.fromkeys(reason for reason in unknown if reason != VANISHES)
     # Slivers between open parts are left to these.
     slim = Fraction(1, SLIVER)
@@ -185,7 +187,7 @@ def find_intervals(
     counted: list[Interval] = []
     count: PoleCount | None = None
     for before, part in pairwise([limits, *parts]):
-        own = [gap for gap in gaps if before[1] <= gap.box[0][0] < part[0]]
+        own = [gap for gap in (*gaps, *wide) if before[1] <= gap.box[0][0] < part[0]]
         change = 0 if count is None else pair_that_crosses(function, own, (before[0], part[1]), bits)
         if count and change:
             count = PoleCount(count.right + change, count.axis)
@@ -194,15 +196,15 @@ def find_intervals(
             count = None if verdict.right is None else PoleCount(verdict.right, axis)
             reasons += [verdict.reason] if count is None else []
         counted += [(part, count)] if count else []
-    boundaries, intervals = _boundaries(function, counted, gaps, limits, digits, reasons)
+    boundaries, intervals = _boundaries(function, counted, gaps, wide, limits, digits, reasons)
     stability = StabilityMap(
         parameter.name,
         parameter.unit,
         limits,
-        boundaries if not reasons else (),
-        intervals if not reasons else (),
+        boundaries,
+        intervals,
         nominal,
-        is_complete=not reasons,
+        is_complete=bool(intervals) or not reasons,
         reasons=tuple(dict.fromkeys(reasons)),
         digits=digits,
         method=BOXES,
@@ -264,33 +266,44 @@ def _boundaries(
     function: CharacteristicFunction,
     counted: Sequence[Interval],
     gaps: Sequence[OpenBox],
+    wide: Sequence[OpenBox],
     limits: Ends,
     digits: int,
     reasons: list[str],
 ) -> tuple[tuple[Boundary, ...], tuple[GainInterval, ...]]:
-    """Return the ends between parts in which poles are counted, and the parts between these."""
+    """Return the ends between parts in which poles are counted, and the parts between these.
+
+    Where it is not decided what happens between two parts, they end where they are proved.
+    """
     boundaries: list[Boundary] = []
     first, last = (counted[0][0][0], counted[-1][0][1]) if counted else limits
-    starts: list[arb] = [ball(limits[0]).union(ball(first))]
+    starts, ends = [ball(limits[0]).union(ball(first))], list[arb]()
     poles = [count for _, count in counted]
     for (before, count), (after, other) in pairwise(counted):
         own = [gap for gap in gaps if before[1] <= gap.box[0][0] < after[0]]
         place = ball(before[1]).union(ball(after[0]))
         is_real = (count.right - other.right) % 2 == 1  # others come in pairs
-        if count == other:
+        unbounded = {gap.radius for gap in own if not gap.is_bounded}
+        is_open = any(before[1] <= gap.box[0][0] < after[0] for gap in wide) or bool(unbounded - {VANISHES})
+        if count == other and not is_open:
+            is_open = True
             reasons.append(
                 f"it could not be decided whether poles touch the axis near {float(before[1]):.6g}"
             )
-        is_far = any(not gap.is_bounded for gap in own)
-        if is_far:  # a real pole that does not pass the axis at 0 passes it at infinity
+        elif unbounded and not is_open:  # a real pole that does not pass the axis at 0 passes it at infinity
             slopes, every = function.expanded(((before[1], after[0]),)), range(len(function.factors))
             with precision(BITS):
                 values = slopes.around(acb(0), every)
-            reasons += [VANISHES] * (not is_real or any(value.contains(0) for value, _ in values))
+            is_open = not is_real or any(value.contains(0) for value, _ in values)
+        reasons += [VANISHES] * (is_open and VANISHES in unbounded)
+        is_far = bool(unbounded)
         omegas = () if is_far else _frequencies(own, digits, is_real=is_real)
-        boundaries.append(Boundary(place, (Crossing(place, omegas, is_infinite=is_far),)))
-        starts.append(place)
-    ends = [*starts[1:], ball(limits[1]).union(ball(last))]
+        boundaries.append(
+            Boundary(place, (Crossing(place, omegas, is_infinite=is_far and not is_open, is_open=is_open),))
+        )
+        starts.append(ball(after[0]) if is_open else place)
+        ends.append(ball(before[1]) if is_open else place)
+    ends.append(ball(limits[1]).union(ball(last)))
     intervals = tuple(map(GainInterval, starts, ends, poles)) if poles else ()
     return tuple(boundaries), intervals
 

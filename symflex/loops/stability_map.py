@@ -451,6 +451,8 @@ def _boundary_row(stability: StabilityMap, index: int) -> tuple[str, ...]:
         )
     cycles = ", ".join(short_hertz(w) for w in places[:SHOWN])
     passing = f"{change:+d}" if change else "touch the axis" if places else "0"
+    if stability.method == BOXES and any(c.is_open for c in kinds):
+        omegas = passing = "not decided"
     return printed.re, printed.radius, omegas, cycles, passing
 
 

@@ -679,6 +679,9 @@ def _is_constant(expression: Expression) -> bool:
 def _said(term: Expression) -> str:
     """Return ``b*s in `` for a message, nothing where the term is long or has a quantity in it."""
     text = "" if any(isinstance(n, QuantityLiteral) for n in nodes(term)) else format_expression(term)
+    for n in nodes(term):
+        if isinstance(n, Name) and n.span and n.name not in n.span.text:  # a delay that was written as exp
+            text = text.replace(n.name, n.span.text)
     return f"{text} in " if 0 < len(text) <= LONGEST_TERM else ""
 
 

@@ -303,6 +303,7 @@ def _unknown_function(call: Call, scope: ModelScope) -> Diagnostic:
         return Diagnostic("SF210", f"unknown function '{call.name}'", call.span, hint)
     if call.name.lower() in NONLINEAR:
         hint = LINEARISE if scope.unknowns else AT_REST
+        hint = f"of a parameter K it is sqrt(K^2); else {hint}" if "abs" in call.name.lower() else hint
         return Diagnostic("SF222", f"{call.name} is not linear", call.span, hint)
     hint = nearest(call.name, [*FUNCTIONS, *scope.unknowns]) or "functions: " + ", ".join(FUNCTIONS)
     hint += "; unknowns of fields: " + ", ".join(scope.unknowns) if scope.unknowns else ""

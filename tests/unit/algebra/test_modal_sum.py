@@ -2,6 +2,7 @@
 
 import mpmath as mp
 import pytest
+from flint import acb, acb_series, arb
 
 from symflex.algebra import modal_sum as module
 from symflex.algebra.modal_sum import ModalSums, modal_amplitudes, mode_values
@@ -124,3 +125,9 @@ def test_too_many_products_are_refused(monkeypatch):
     found, sums = sums_of((L,))
     with pytest.raises(BudgetError, match="more than 9 products of exponentials"):
         sums.of(kernels(found, 0)[0] ** 2)
+
+
+def test_roots_that_are_apart_have_values_in_wide_balls():
+    wide = acb_series([acb(arb(0, 0.45), arb(0, 0.45)), 1], 2)
+    _, ((_, first, *_), *_) = mode_values([wide, acb(1), acb(0, 1), acb(-1)], acb(1))
+    assert first[0].contains(acb(0.1) / ((acb(0.1) ** 2 - 1) * (acb(0.1) - acb(0, 1))))

@@ -96,8 +96,33 @@ def test_a_real_pole_passes_through_infinity_where_the_highest_power_vanishes() 
     assert (low, [b.entering for b in stable.boundaries]) == (0, [1])
     assert abs(high - 1 / 0.3) < 1e-14
     kept = model.stability(over="K", limits=(-5, 8), a=-1)
-    assert (kept.certified, kept.stable) == (False, ())
+    assert not kept.certified
+    assert [(float(a), float(b)) for a, b in kept.stable] == [(-5, pytest.approx(-1)), (pytest.approx(-1), 8)]
     assert "the highest power of s may vanish, so poles have no bound" in kept.reasons
+
+
+@pytest.mark.parametrize(
+    ("gain", "ends"),
+    [
+        ("log(1 + K^2)", [(-2, 2)]),
+        ("tan(K)", [(-2, atan2(5, 1) - pi), (-pi / 4, atan2(5, 1)), (3 * pi / 4, 3)]),
+        ("sqrt(K^2)", [(-2, 0), (0, 2)]),
+    ],
+)
+def test_where_a_function_of_the_parameter_has_no_value_the_rest_is_decided(
+    gain: str, ends: list[tuple[float, float]]
+) -> None:
+    """``s^3 + 2 s^2 + 3 s + 1 + k`` is stable for -1 < k < 5 (Routh)."""
+    model = Model(
+        parameters={"K": {"value": 1, "assume": "real"}},
+        signals={"y": f"({gain})*(r - y)/(s^3 + 2*s^2 + 3*s + 1)"},
+        inputs={"r": {}},
+        outputs={"Y": "y"},
+    )
+    stable = model.stability(over="K", limits=(-2, 3 if "tan" in gain else 2))
+    assert [(float(a), float(b)) for a, b in stable.stable] == [pytest.approx(e, abs=1e-12) for e in ends]
+    assert stable.certified == (gain == "log(1 + K^2)")
+    assert stable.is_stable
 
 
 def test_a_pole_that_stays_on_the_axis_is_said() -> None:
