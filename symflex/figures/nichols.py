@@ -61,7 +61,7 @@ def _draw_chart(
                 # At the top of closed contours, else at the border.
                 i = places[np.argmax(contour.imag[places] if level > 0 else phase[places])]
                 side = "center" if level > 0 else "right"
-                note = axes.annotate(f"{level} dB", (phase[i], contour.imag[i]), fontsize="x-small", ha=side)
+                note = axes.annotate(f"${level}$ dB", (phase[i], contour.imag[i]), fontsize=6, ha=side)
                 note.set(color=QUIET, va="center", zorder=1.5, bbox={"fc": "white", "ec": "none", "pad": 0.4})
     for centre in (360 * turn - 180 for turn in turns if left <= 360 * turn - 180 <= right):
         axes.plot([centre], [0], "+", color="black", markersize=8, markeredgewidth=1.1, zorder=4)

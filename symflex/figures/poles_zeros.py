@@ -77,7 +77,7 @@ def draw_poles_zeros(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figu
         [] if canvas.clouds is None else canvas.clouds(*each) for each in zip(bounds, maps, strict=True)
     ]
     count = len(panels)
-    width = canvas.width or (COLUMN_INCHES if count <= PANELS_IN_COLUMN else PAGE_INCHES)
+    width = canvas.width or (COLUMN_INCHES if count < PANELS_IN_COLUMN else PAGE_INCHES)
     columns = min(count, PANELS_IN_COLUMN if width < (COLUMN_INCHES + PAGE_INCHES) / 2 else PANELS_ON_PAGE)
     rows = ceil(count / columns)
     own = canvas.own_axes(count) if canvas.axes else ()

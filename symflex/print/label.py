@@ -277,12 +277,14 @@ class _Found:
 DEEP: Final = frozenset("fgjpqyQβγζημξρϱςϕφχψ")
 TALL: Final = frozenset("bdfhijklABCDEFGHIJKLMNOPQRSTUVWXYZβδζθϑλξϕψΓΔΘΛΞΠΣΥΦΨΩ")
 """Letters whose depth or height in the font of pages moves their scripts by more than 0.015 em."""
+CLOSED: Final = tuple(f'stretchy="false">{sign}</mo></mrow>' for sign in ")]}")
 
 
 def with_scripts(base: str, below: str, above: str) -> str:
-    """Return an element with scripts, those of all single letters at the same depth and height, as in TeX."""
-    letter = base.removeprefix("<mi>").removesuffix("</mi>")
-    gone = ' depth="0"' * bool(below and letter in DEEP) + ' height="0"' * bool(above and letter in TALL)
+    """Return an element with scripts, those of names and brackets at the same depth and height, as in TeX."""
+    letter = base.partition(">")[2].removesuffix("</mi>") if base.startswith("<mi") else ""
+    is_tall = (letter.isalpha() and not TALL.isdisjoint(letter)) or base.endswith(CLOSED)
+    gone = ' depth="0"' * bool(below and letter in DEEP) + ' height="0"' * bool(above and is_tall)
     base = f"<mpadded{gone}>{base}</mpadded>" if gone else base
     if above and 'class="it"' in base:  # slanted letters lean into what stands above their end
         base = row(base, '<mspace width="0.12em"></mspace>')

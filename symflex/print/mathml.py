@@ -214,7 +214,7 @@ MATHML: Final = Spelling(
     sum=_sum,
     product=lambda parts: row(*parts),
     between=_between,
-    function_power=lambda head, call, exponent: call.replace(head, f"<msup>{head}{exponent}</msup>", 1),
+    function_power=lambda head, call, exponent: call.replace(head, with_scripts(head, "", exponent), 1),
 )
 
 

@@ -82,7 +82,7 @@ def read_row(children):
             argument = read(children[i + 2])
             head = children[i]
             if head.tag == "msup":
-                texts.append(f"({head[0].text}({argument}))^({read(head[1])})")
+                texts.append(f"({''.join(head[0].itertext())}({argument}))^({read(head[1])})")
             else:
                 texts.append(f"{head.text}({argument})")
             i += 3
@@ -197,7 +197,7 @@ def test_scripts_stand_where_tex_sets_them():
     )
     assert found["l^2"] == '<msup><mpadded height="0"><mi>l</mi></mpadded><mn>2</mn></msup>'
     assert "<mo>⋅</mo><msup><mn>10</mn>" in found["2*10^5"]  # not 210^5
-    assert (found["tip"], ">EI</mi><mspace" in found["EI^2"]) == ("<mi>tip</mi>", True)
+    assert (found["tip"], ">EI</mi></mpadded><mspace" in found["EI^2"]) == ("<mi>tip</mi>", True)
     assert '</msubsup><mo lspace="0.17em"' in found["r_trans^2*m_2"]
 
 
