@@ -411,8 +411,7 @@ def _lines(kind: int, content: memoryview, order: str, shape: list[int]) -> npt.
 
 def _version_4(data: bytes) -> Arrays:
     variables: Arrays = {}
-    order = "<" if int.from_bytes(data[:4], "little") <= _LAST_MOPT else ">"
-    reader = ByteReader(data, order)
+    reader = ByteReader(data, "<" if int.from_bytes(data[:4], "little") <= _LAST_MOPT else ">")
     for _ in range(VARIABLES_LIMIT + 1):
         if not reader.left:
             return variables

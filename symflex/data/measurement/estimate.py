@@ -45,6 +45,7 @@ LEVELS: Final = 0.02  # share of a step or pulse by which a level may be off
 PULSE: Final = 0.1  # share of a record in which a pulse ends
 SETTLED: Final = 1e-4  # the same, below which what is left needs no window, noise or not
 BELOW_NOISE: Final = 0.1  # share of the smallest amplitude seen in noise to which a window takes the rest
+ABOVE_NOISE, LEAST_ALIVE = 6.0, 1000  # deviations that no sample of noise is off by; samples kept at least
 AT_REST: Final = 0.02  # share of the largest amplitude below which a record's end is at rest, noise aside
 EXCITED: Final = 1e-3  # share of the largest amplitude of the input's spectrum below which no line is excited
 EXCITED_AGAIN: Final = 0.03  # the same of a periodic input: harmonics, and what a window fades, are below
@@ -103,8 +104,7 @@ class _Channel:
         """Tell whether the output begins and ends at rest, but for noise."""
         n = max(int(ENDS * self.y.size), 4)
         begin, end = self.y[: min(n, 4)], self.y[-n:]
-        noise = _noise_of(self.y)
-        limit = AT_REST * float(np.max(np.abs(self.y - begin[0]))) + 4 * noise
+        limit = AT_REST * float(np.max(np.abs(self.y - begin[0]))) + 4 * _noise_of(self.y)
         return float(abs(begin[0] - np.median(end))) <= limit and float(np.ptp(end)) <= 2 * limit
 
     @property
@@ -122,8 +122,7 @@ class _Channel:
         """Samples after which the input repeats, twice or more in the record; ``None`` if it does not."""
         u = self.u - self.u.mean()
         n = u.size
-        spectrum = np.fft.rfft(u, 2 * n)
-        same = np.fft.irfft(np.abs(spectrum) ** 2)[: n // 2 + 1]
+        same = np.fft.irfft(np.abs(np.fft.rfft(u, 2 * n)) ** 2)[: n // 2 + 1]
         energy = np.concatenate([[0.0], np.cumsum(u**2)])
         ahead, behind = energy[n - np.arange(same.size)], energy[n] - energy[: same.size]
         share = same / np.maximum(np.sqrt(ahead * behind), 1e-300)
@@ -216,8 +215,9 @@ def _of_step(channel: _Channel, how: Estimate) -> _Estimated:
     assert channel.level is not None
     jump, size = channel.level
     before = float(np.mean(channel.y[:jump])) if jump else 0.0
-    increments = np.diff(np.concatenate([[before], channel.y[jump:]]))
-    noise = _noise_of(channel.y[jump:])
+    y = channel.y[jump:]
+    y, noise = y[: _alive(y)], _noise_of(y)
+    increments = np.diff(np.concatenate([[before], y]))
     weights, window, said = _weights(increments, 2 * noise, channel.step_s, how)
     frequency = np.fft.rfftfreq(increments.size, channel.step_s)
     s = 2j * np.pi * frequency * channel.step_s - np.log(weights[1])
@@ -229,8 +229,7 @@ def _of_step(channel: _Channel, how: Estimate) -> _Estimated:
     variance = np.abs(1 - np.exp(-s)) ** 2 * np.sum(weights**2) + 1 / max(jump, 1)
     # The last level is no mean of samples that still ring a little: a decay cut off ends with its last one.
     variance += weights[-1] ** 2
-    deviation = noise * np.sqrt(variance) / abs(size) / np.maximum(np.abs(hold), 1e-3)
-    coherence = _coherence(response, deviation)
+    coherence = _coherence(response, noise * np.sqrt(variance) / abs(size) / np.maximum(np.abs(hold), 1e-3))
     said = f"{OF_STEP}: spectrum of the output's increments over the jump{said}"
     return frequency[kept], response[kept], coherence[kept], None, window, said
 
@@ -284,6 +283,13 @@ def _weights(y: Real, noise: float, step_s: float, how: Estimate) -> tuple[Real,
     return np.asarray(weights, np.float64), f"exponential:{tau:.4g}", said
 
 
+def _alive(y: Real) -> int:
+    """Return where to end a record: if most of it is noise, at thrice the time at which only that is left."""
+    moving = np.flatnonzero(np.abs(y - np.median(y[y.size // 2 :])) > ABOVE_NOISE * _noise_of(y))
+    end = max(3 * int(moving[-1]), LEAST_ALIVE) if moving.size else y.size
+    return end if 2 * end < y.size else y.size
+
+
 def _apart(weights: Real) -> npt.NDArray[np.bool_]:
     """Return which lines are kept behind a window: every so many that noise has half forgotten."""
     lines = np.arange(weights.size // 2 + 1)
@@ -319,8 +325,7 @@ def _by_segments(channel: _Channel, how: Estimate) -> _Estimated:
     from scipy import signal  # takes a third of a second, and other files need none of it
 
     n = channel.u.size
-    wanted = how.segments or max(SEGMENTS, -(-n // LONGEST_SEGMENT))
-    length = max(n // wanted, 16)
+    length = max(n // (how.segments or max(SEGMENTS, -(-n // LONGEST_SEGMENT))), 16)
     given: dict[str, Any] = {"fs": 1 / channel.step_s, "nperseg": length, "detrend": "constant"}
     is_hann = how.window == "hann"
     given |= {"window": "hann", "noverlap": length // 2} if is_hann else {"window": "boxcar", "noverlap": 0}

@@ -182,8 +182,7 @@ def _of_arrays(name: str, arrays: Arrays) -> InputSignal:
         factor = Fraction(1)
     else:
         plain = {k: a for k, a in arrays.items() if a.dtype.kind in "fiu" and a.size > 1}
-        named = ((k, m) for k in plain if (m := TIME.fullmatch(k.rpartition(".")[2])))
-        key, match = next(named, ("", None))
+        key, match = next(((k, m) for k in plain if (m := TIME.fullmatch(k.rpartition(".")[2]))), ("", None))
         fitting = [k for k, a in plain.items() if k != key and key and a.size == plain[key].size]
         if match is None or len(fitting) != 1:
             message = f"'{name}': an input is one array called t or time, and one other as long"
@@ -215,8 +214,7 @@ def _decimal_times(times: list[Fraction]) -> list[Fraction]:
     decimal = [Fraction(f"{number:.10g}") for number in numbers.tolist()]
     if np.all(np.abs(numbers - places * step) <= EVEN * step):
         decimal = [Fraction(str(step)) * int(place) for place in places.tolist()]
-    is_kept = map(eq, *(map(lt, x, x[1:]) for x in (decimal, times)))
-    return decimal if all(is_kept) else times
+    return decimal if all(map(eq, *(map(lt, x, x[1:]) for x in (decimal, times)))) else times
 
 
 def _decimal(text: str, decimal: str = ".") -> Fraction | None:

@@ -139,8 +139,7 @@ class MeasuredResponse:
     def misfit_db(self, model: npt.NDArray[np.complex128]) -> float:
         """Return the rms error of the model's magnitude on the lines [dB]."""
         with np.errstate(divide="ignore"):
-            level = 20 * np.log10(np.abs(model / self.values))
-        return float(np.sqrt(np.mean(level**2)))
+            return float(np.sqrt(np.mean((20 * np.log10(np.abs(model / self.values))) ** 2)))
 
     def misfit_degrees(self, model: npt.NDArray[np.complex128]) -> float:
         """Return the rms error of the model's phase on the lines [deg]."""

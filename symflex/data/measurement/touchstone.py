@@ -58,8 +58,7 @@ def read_touchstone(name: str, data: bytes, stem: str, asked: str = "") -> tuple
                 message = f"{len(row)} numbers in a line of a {ports}-port, which has {1 + 2 * ports**2}"
                 raise DataError(Diagnostic("SF601", message, place, "one line per frequency"))
     if not rows or len(rows) > MAX_LINES:
-        code = "SF607" if rows else "SF605"
-        raise DataError(Diagnostic(code, f"'{name}' has {len(rows)} lines of data"))
+        raise DataError(Diagnostic("SF607" if rows else "SF605", f"'{name}' has {len(rows)} lines of data"))
     table = np.array(rows)
     resistance = float(options[4])
     chosen = asked.strip().lower() or ("z11" if ports == 1 else "s21")
