@@ -134,7 +134,7 @@ def test_a_file_that_is_no_input_is_refused_at_its_place(oscillator, tmp_path):
         ("time_s,u\n0,1\n1,0,5\n2,3\n", "SF602"),
         ("time_s,u\n0,1\n2,1\n1,3\n", "SF604"),
         ("frequency,u\n0,1\n1,1\n", "SF602"),
-        ("time_h,u\n0,1\n1,1\n", "SF602"),
+        ("time_cycles,u\n0,1\n1,1\n", "SF602"),
         ("0,1\n1,1e999\n", "SF603"),
     ):
         (tmp_path / "u.csv").write_text(text, encoding="utf-8")
