@@ -55,7 +55,7 @@ SOME_TFS: Final = {"metavar": "OUT/IN", "multiple": True}
 ONLY_TFS: Final = {**SOME_TFS, "help": "Only this transfer function; may be repeated."}
 RECORD: Final = {
     "metavar": "FILE",
-    "help": "Record in time: its input drives the model, its output is compared and drawn.",
+    "help": "Time record: its input drives the model, its output is compared and drawn.",
 }
 COLUMNS_OF_RECORD: Final = {"metavar": "WORDS", "help": "Columns of the record: t,u,y."}
 JSON: Final = {"help": "Print the result as JSON."}
@@ -75,7 +75,7 @@ SPREAD: Final = {
     "metavar": "[SHARE]",
     "is_flag": False,
     "flag_value": "",
-    "help": "Every parameter at once, each up to this share off, 10%; without a share those with a 'spread'.",
+    "help": "All parameters at once, each off by up to this share, 10%; without one, those with a 'spread'.",
 }
 REPRESENTATIONS: Final = ("auto", "expanded", "nested")
 WIDTHS: Final = "ieee|a4|MM"
@@ -500,7 +500,7 @@ class PlotOptions:
     asymptotes: bool = option(
         False, "--asymptotes", help="Draw asymptotes of lumped functions in a Bode plot."
     )
-    verdict: bool = option(False, "--verdict", help="Write above the figure whether it is stable.")
+    verdict: bool = option(False, "--verdict", help="Write above the figure whether the system is stable.")
     spread: Stated | None = option(None, "--spread", **SPREAD)
     at: Sequence[Stated] = option(
         (), "--at", multiple=True, metavar="F", help="Frequency of a deflection: 30Hz; may be repeated."
@@ -538,17 +538,17 @@ class AuditOptions:
 SEGMENTS: Final = {
     "least": 1,
     "metavar": "N",
-    "help": "Records in time: average this many segments by Welch's method.  [default: depends on the input]",
+    "help": "Time records: average this many segments by Welch's method.  [default: depends on the input]",
 }
 ESTIMATOR: Final = {
     "choices": ("h1", "h2"),
     **SHOWN,
-    "help": "Records in time: h1 for noise at the output, h2 for noise at the input.",
+    "help": "Time records: h1 for noise at the output, h2 for noise at the input.",
 }
 WINDOW_OF_DATA: Final = {
     "metavar": "NAME",
     "help": "Window of the estimate, hann, none or exponential:SECONDS (its time constant), if the file does "
-    "not give it; of a record in time the one to use.",
+    "not give it; for a time record, the window to use.",
 }
 
 
@@ -595,7 +595,7 @@ class FitOptions:
         "--columns",
         metavar="WORDS",
         help="Columns of the file, such as f,re,im or f_khz,-,mag_db,phase_deg; of arrays f=NAME,h=NAME; "
-        "s21; of records in time t,u,y.",
+        "s21; of time records t,u,y.",
     )
     first_hz: float = option(
         0.0, "--from", type=float, least=0, help="First frequency of data that list none [Hz]; needs --step."
@@ -657,7 +657,7 @@ class MeasureOptions:
         5000.0, "--rolloff", type=float, least=0, **SHOWN, help="Corner of the accelerometer [Hz], or 0."
     )
     seed: int = option(1, "--seed", least=0, **SHOWN, help="Seed of the random numbers.")
-    columns: str = option("", "--columns", metavar="WORDS", help="Columns of a record in time: t,u,y.")
+    columns: str = option("", "--columns", metavar="WORDS", help="Columns of a time record: t,u,y.")
     window: str | None = option(None, "--window", **WINDOW_OF_DATA)
     segments: int | None = option(None, "--segments", **SEGMENTS)
     estimator: str = option("h1", "--estimator", **ESTIMATOR)

@@ -190,9 +190,9 @@ def fit(
     allow_outside : sequence of str or Path
         Folders that ``model`` blocks of the base may read besides its own.
     estimator : str
-        Records in time: ``h1`` for noise at the output, ``h2`` for noise at the input.
+        Time records: ``h1`` for noise at the output, ``h2`` for noise at the input.
     segments : int, optional
-        Records in time: average this many segments by Welch's method; by default it depends on the input.
+        Time records: average this many segments by Welch's method; by default it depends on the input.
 
     Raises
     ------

@@ -51,7 +51,7 @@ def write_report(
     ----------
     specs : str, Path, Model or a sequence of them
         Specifications, or models; a folder means all in it and its subfolders, with measured responses.
-        If no file has the name, the example of that name is taken, such as ``eppinger1988``.
+        If there is no such file, the example of that name is taken, such as ``eppinger1988``.
     folder : str or Path
         Folder to write; files of the same name are replaced, others stay.
     pdf : bool, optional
@@ -59,7 +59,7 @@ def write_report(
     live : bool
         Whether to write a page with sliders for each model, which runs a script.
     day : date, optional
-        Printed; without it equal specifications give equal files.
+        Printed; without it identical specifications give identical files.
     jobs : int
         How many models are computed at once, each in a process of its own; 1 for all in this one. More than
         one needs a program that may be imported anew (``if __name__ == "__main__":``).

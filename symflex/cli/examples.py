@@ -71,8 +71,8 @@ def copy(name: str, folder: str | None) -> int:
     """Copy the example NAME into FOLDER.
 
     NAME is a folder or a model of the list, such as eppinger1988, eppinger1988/two_mass or two_mass. A folder
-    is copied with all that is in it, by default into a folder of its name. A model is copied with the models
-    and data that it needs, by default into the current folder. FOLDER is made if it does not exist, and no
+    is copied with everything in it, by default into a folder of its name. A model is copied with the models
+    and data that it needs, by default into the current folder. FOLDER is created if it does not exist, and no
     existing file is overwritten unless it is the same.
     """
     from symflex.files.write import write_tree  # a list writes nothing

@@ -11,11 +11,11 @@ from symflex.options import LiveOptions
 def live(given: LiveOptions) -> int:
     """Write a page with a slider for every parameter of a model.
 
-    The page shows drawing, formula, Bode plot, poles and zeros, step response and modes, and all of them
-    follow the sliders. It is one file that opens without a network. A slider goes over the parameter's
-    'range', or else from a tenth of its value to ten times its value. With several SPECs, the page has a
-    list of models. Functions without a short formula, such as those of frames, use the values in the file:
-    they are shown and do not move. If no file has the name, symflex takes the example of that name.
+    The page shows the drawing, formula, Bode plot, poles and zeros, step response and modes, and all of them
+    follow the sliders. It is one file that opens without a network. A slider covers the parameter's 'range',
+    or else from a tenth of its value to ten times its value. With several SPECs, the page has a list of
+    models. Functions without a short formula, such as those of frames, use the values in the file: they are
+    shown and do not move. If there is no such file, symflex takes the example of that name.
     """
     from symflex import pipeline
     from symflex.cli.progress import ProgressBar

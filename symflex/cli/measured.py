@@ -26,7 +26,7 @@ def fit(given: FitOptions) -> int:
 
     DATA are files of columns in text, .frd, .zma, .s1p, .s2p, .uff, .mat, .npz, .json, .xlsx, .h5 or .tdms,
     as instruments and programs save them. symflex guesses what a file does not state and prints each guess;
-    --columns overrules it. If something could mean two things, the error gives the option that decides it.
+    --columns overrides it. If something could mean two things, the error gives the option that decides it.
 
     Each resonance adds a pair of poles and a pair of zeros to the transfer function --base SPEC --tf OUT/IN,
     or to a gain and a power of s. Several responses are fitted together and share their poles. -o writes a
@@ -114,7 +114,7 @@ def _draw(resonances: ResonanceFit, given: FitOptions) -> None:
 
 
 def _estimate(given: FitOptions | MeasureOptions) -> Estimate:
-    """Return how responses of records in time are estimated."""
+    """Return how responses of time records are estimated."""
     from symflex.data.measurement import Estimate
 
     return Estimate(given.estimator, given.segments, given.window or "hann")
@@ -138,9 +138,9 @@ def _read(given: FitOptions) -> list[MeasuredResponse]:
 
 @command_of("measure", MeasureOptions)
 def measure(spec: Specification, given: MeasureOptions) -> int:
-    """Write the frequency response of a record in time, or a synthetic measurement of a model.
+    """Write the frequency response of a time record, or a synthetic measurement of a model.
 
-    A record in time has a column of time and one for each channel, as for 'symflex fit'. How its response is
+    A time record has a column of time and one for each channel, as for 'symflex fit'. How its response is
     estimated depends on the input: from a step, an impact, whole periods, or by Welch's method. --tf OUT/IN
     chooses one of several.
 
@@ -165,7 +165,7 @@ def measure(spec: Specification, given: MeasureOptions) -> int:
 
 
 def _record(path: str, given: MeasureOptions) -> MeasuredResponse | None:
-    """Return the response of a record in time that ``--tf`` names, ``None`` if the file is none."""
+    """Return the response of a time record that ``--tf`` names, ``None`` if the file is none."""
     from symflex.data.measurement import prepared, responses_in_time
 
     every = responses_in_time(path, given.columns, _estimate(given))

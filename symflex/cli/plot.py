@@ -72,7 +72,7 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     show everything up to the end of the band. --xlim, --ylim and --phase set the ends of axes. Frequencies
     and values in the s plane may have a unit, '1 kHz'. step and impulse run to --until or the end of --xlim
     [s], by default until the slowest motion has died away. step --record FILE drives the model with the
-    input of a record in time instead, and draws the measured output over the model's, as 'symflex respond'.
+    input of a time record instead, and draws the measured output over the model's, as 'symflex respond'.
 
     Without -o, the figure is written to the current folder as SPEC_KIND.pdf.
 

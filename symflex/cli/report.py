@@ -21,19 +21,19 @@ EPOCH_VARIABLE = "SOURCE_DATE_EPOCH"
 def report(given: ReportOptions) -> int:
     """Write a report on models: equations, poles, zeros, figures, comparison, code.
 
-    A SPEC that is a folder stands for all in it and its subfolders. Measured responses there (.csv,
+    A SPEC that is a folder stands for all models in it and its subfolders. Measured responses there (.csv,
     .uff, .mat, .npz) are drawn with the transfer functions of the same name. DIR/index.html is one page with
     everything, which opens without a network. Next to it are report.tex, report.pdf and the folders figures,
-    code and data. The report audits what a specification publishes, compares the models, and judges the
-    claims of a publication that it knows. If no file has the name, symflex takes the example of that name:
-    'symflex report eppinger1988' needs no file, and 'symflex examples' lists the names.
+    code and data. The report audits published formulas, compares the models, and judges the claims of a
+    publication that it knows. If there is no such file, symflex takes the example of that name: 'symflex
+    report eppinger1988' needs no file, and 'symflex examples' lists the names.
 
     All specifications are checked first: if one is invalid, the exit code is 3 and nothing is written. If a
     model cannot be computed later, only its own chapter is missing, and the report gives the reason.
 
-    With a fixed date, equal specifications give equal files. Exit code 4: something could not be certified,
-    or a figure of [figures] could not be drawn. Exit code 5: a budget of time or memory was exceeded. In both
-    cases the report is written and says where.
+    With a fixed date, identical specifications give identical files. Exit code 4: something could not be
+    certified, or a figure of [figures] could not be drawn. Exit code 5: a budget of time or memory was
+    exceeded. In both cases the report is written and shows where.
     """
     from symflex.cli.progress import ProgressBar
     from symflex.report.published import written

@@ -38,8 +38,8 @@ def respond(spec: Specification, given: RespondOptions) -> int:
     --initial gives values of states at the start, or at the first sample of a file; --to free adds no input.
     --shaped passes the input through the shaper that 'symflex shape' prints for the same transfer function.
 
-    --record FILE drives the model with the input of a record in time, as 'symflex fit' reads them. The rms of
-    the difference between measured output and model is printed, and -o draws both. Values are in the units
+    --record FILE drives the model with the input of a time record, which is read as by 'symflex fit'. The rms
+    of the difference between measured output and model is printed, and -o draws both. Values are in the units
     of the model.
 
     An impulse in the response is printed separately, not among the values. The value at t = 0 is the limit
@@ -140,7 +140,7 @@ def _samples(
     if given.record is None:
         signal = read_signal(place)
     elif (record := record_in_time(place, given.columns)) is None:
-        raise refused(f"'{place}' is not a record in time", "a column called time, or --columns t,u,y")
+        raise refused(f"'{place}' is not a time record", "a column called time, or --columns t,u,y")
     else:
         signal, measured = record.driven(output)
     for guess in signal.guesses:

@@ -35,9 +35,8 @@ def character_slip(value: str, position: int) -> Slip:
     before = value[position - 1] if position else ""
     if character == "_":
         return _underscore_slip(value, position, before)
-    hint = character_hint(value, position)
     message = f"unexpected {_quoted(character)}{code_point(character)}"
-    return Slip(position, position + 1, "SF111", message, hint)
+    return Slip(position, position + 1, "SF111", message, character_hint(value, position))
 
 
 def _underscore_slip(value: str, position: int, before: str) -> Slip:
@@ -52,15 +51,13 @@ def _underscore_slip(value: str, position: int, before: str) -> Slip:
 def end_slip(value: str, last: Token, expected: Collection[str], *, is_equation: bool) -> Slip:
     """Explain a text that ends too early; ``last`` is its last word."""
     opening = _open_parenthesis(value, len(value))
-    start = last.start
-    end = last.end
     if "NUMBER" in expected or "NAME" in expected:
         what = "equation" if is_equation else "expression"
         message = f"the {what} ends after {_quoted(last)}; expected {_wanted(expected, opening, '')}"
-        return Slip(start, end, "SF111", message)
+        return Slip(last.start, last.end, "SF111", message)
     if opening is not None:
         return _unclosed_slip(opening)
-    return Slip(start, end, "SF111", "this equation has no '='", "write it as 'left = right'")
+    return Slip(last.start, last.end, "SF111", "this equation has no '='", "write it as 'left = right'")
 
 
 def token_slip(value: str, recent: Sequence[Token], expected: Collection[str], *, is_equation: bool) -> Slip:
@@ -85,16 +82,17 @@ def _token_hint(
     if token.type == "EQUAL":
         if not is_equation:
             return "an expression has no '='; only the equations and conditions of a field do"
-        start = token.start
-        if not value[:start].strip():
+        if not value[: token.start].strip():
             return "write an expression to the left of '='"
-        return "write a single '='" if value[:start].endswith("=") else "an equation has one '='"
+        return "write a single '='" if value[: token.start].endswith("=") else "an equation has one '='"
     if token.type == "RPAR" and opening is None:
         return "there is no '(' for it to close"
     if token.type == "RPAR" and len(recent) > 1 and recent[-2].type == "LPAR":
         return "write an expression between '(' and ')'"
     if token.type == "SCALE" and wants_operand and len(recent) > 1 and str(recent[-2]) == str(token) == "/":
         return "write '/' to divide"
+    if len(recent) > 1 and recent[-2].type == "DOT" and token.type in {"SCALE", "POWER"}:
+        return f"write '{token}' in place of '.{token}'"
     if wants_operand or len(recent) == 1:
         return None
     return _neighbour_hint(value, recent)

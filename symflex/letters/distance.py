@@ -73,7 +73,7 @@ def distance(
     both = ("poles", first.poles, second.poles), ("zeros", first.zeros, second.zeros)
     for (kind, one, other), over in zip(both, over_box, strict=True):
         worst, compared, lost = _moved(one, other, high)
-        how = f"moved by at most {percent(worst)}" if worst > UNCHANGED else "where they were"
+        how = f"moved by at most {percent(worst)}" if worst > UNCHANGED else "unchanged"
         if over:
             how += f", over the spread {f'by {percent(over)}' if isfinite(over) else 'not bounded'}"
         parts = [f"{compared} {how}"] * bool(compared) + [f"{lost} without a counterpart"] * bool(lost)

@@ -263,7 +263,7 @@ class LimitFinder:
         amount = None if turns else value_of(tf, written_powers(front))
         if amount == 0:
             raise NotInLettersError(f"{format_expression(leading)} is zero for the declared values")
-        unit = str(unit_of(tf.unit).dimension * Dimension(s=power)) if tf.unit else ""
+        unit = str(unit_of(tf.unit).dimension * Dimension(s=power)) if tf.unit and power else tf.unit
         own = None if growth or turns else power
         slope = f"{20 * float(power):+.4g} dB/decade" if own else ""
         words = ", ".join(filter(None, (self._words(power), slope)))

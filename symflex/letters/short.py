@@ -374,7 +374,7 @@ def shortened(
     said = [f"{terms[0]} of {terms[1]} terms; coefficients change by at most {percent(changes[0])}{over}"]
     if short is tf:
         stay = f"no term can be dropped within {100 * float(most):g} %: all {terms[1]} stay"
-        longer = f"all {terms[1]} terms stay: with {fewest} the print would be longer"
+        longer = f"all {terms[1]} terms stay: with {fewest} the formula would be longer"
         said = [longer if fewest < terms[1] else stay if terms[1] > 1 else stay.partition(":")[0]]
     static, after = None, bind(short)
     if own.is_rational:

@@ -1,4 +1,4 @@
-"""Roots of s, as of half-infinite bars and fractional orders: each is a block without a name of its own.
+"""Roots of s, as of semi-infinite bars and fractional orders: each is a block without a name of its own.
 
 Input: a draft, as read. Output: the same, with names of blocks for roots of s and for exponentials of them.
 

@@ -197,6 +197,8 @@ CAUSES: Final = {
 
 def roots_text(located: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
     """Return poles and zeros as tables, with the certificate, in lines of at most ``width`` columns."""
+    from symflex.roots import Mode  # imports numpy
+
     certificate = located.certificate
     status = "certified" if certificate.certified else f"NOT CERTIFIED: {certificate.reason}"
     word = located.verdict.brief
@@ -212,15 +214,14 @@ def roots_text(located: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
         default = "; by default, as there are infinitely many" * located.is_default_region
         lines += broken(f"{INDENT}shown: {shown}{default}", width)
     for part in located.excluded:
-        im = f" +- {part.im:g} j" if part.im else ""
-        where = f"{part.radius:.3g} rad/s about {part.re:g}{im}"
-        lines.append(f"{INDENT}left out: {where}, where roots accumulate")
+        where = f"{part.re:g}" + (f" +- {part.im:g} j" if part.im else "")
+        lines.append(f"{INDENT}left out: {part.radius:.3g} rad/s about {where}, where roots accumulate")
     tables = [("poles", located.poles, ""), ("zeros", located.zeros, "")]
-    outside = ", in the right half-plane, outside the requested region"
-    more = [("poles", located.unstable, outside)]
+    more = [("poles", located.unstable, ", in the right half-plane, outside the requested region")]
     for cause, meaning in CAUSES.items():
         more.append(("hidden", tuple(h.root for h in located.hidden if h.cause == cause), f", {meaning}"))
-    none = "none" if certificate.certified else "none found"
+    fewer = f", there are fewer than {located.region.number}" if isinstance(located.region, Mode) else ""
+    none = f"none{fewer}" if certificate.certified else "none found"
     for title, roots, meaning in [*tables, *(table for table in more if table[1])]:
         count = sum(root.multiplicity for root in roots) or none
         lines += ["", f"{INDENT}{title}: {count}{meaning}", *_root_table(roots, digits, width)]

@@ -192,7 +192,8 @@ def _check_nesting(value: str) -> None:
 def _syntax_rejection(unexpected: UnexpectedError, value: str, kind: str) -> RejectedError:
     start, token = unexpected.start, unexpected.token
     if token is not None and token.type == END:
-        return RejectedError("SF202", f"the {kind} '{value}' ends too early", len(value), len(value))
+        hint = "write an exponent after '^', as in mm^2" if value.rstrip(SPACES).endswith("^") else None
+        return RejectedError("SF202", f"the {kind} '{value}' ends too early", len(value), len(value), hint)
     wrong = value[start] if token is None else str(token)
     hint = _syntax_hint(value[:start].strip(SPACES), value[start:].strip(SPACES), wrong)
     message = f"unexpected '{wrong}'{code_point(wrong[0])} in the {kind} '{value}'"

@@ -1,4 +1,4 @@
-"""Passive fields, half-infinite ones too: no pole lies in the right half-plane.
+"""Passive fields, semi-infinite ones too: no pole lies in the right half-plane.
 
 The states of a field are displacements q and the forces p that do work on them, ``q' = a q + C p`` and
 ``p' = G q - a^T p`` up to signs. Then ``q* p`` changes along x by ``C* |p|^2 + G |q|^2``, and between its

@@ -133,7 +133,7 @@ BROKEN = {
     "section_negative_between_its_ends": (
         arm('I = "I_0", A = "«A_0*(1 - 5*x/l*(1 - x/l))»"'),
         "SF209",
-        "A of beam 'arm' at x = 0.28125 m is negative (-1.71875e-05); a cross-section cannot be",
+        "A of beam 'arm' at x = 0.28125 m is negative (-1.71875e-05); a cross-sectional area cannot be",
     ),
     "section_zero_between_its_ends": (
         arm('I = "«I_0*(1 - 2*x/l)^2»", A = "A_0"'),

@@ -9,7 +9,7 @@ abs(F) <= C abs(z)^p. All hyperbolas
 lie there if mu is large. The trapezoidal rule in u is off by no more than integrals along the outermost ones
 say (Trefethen and Weideman 2014, SIAM Review 56, theorem 5.1), which are Bessel functions K.
 
-    F = sqrt(a/s)/k, the surface of a half-infinite body: a step in heat warms it by 2 sqrt(a t/pi)/k
+    F = sqrt(a/s)/k, the surface of a semi-infinite body: a step in heat warms it by 2 sqrt(a t/pi)/k
 """
 
 from __future__ import annotations

@@ -220,7 +220,7 @@ NUMPY = Language(
 )
 ARRAY_API = Language(
     ".py",
-    "the same for the library of the arguments: numpy, torch, jax.numpy, cupy",
+    "the same for the array library of the arguments: numpy, torch, jax.numpy, cupy",
     partial(python_module, dialect=ARRAY_API_DIALECT),
 )
 JAX = Language(

@@ -400,7 +400,7 @@ def _from_unknown(arrays: Arrays, name: str, stem: str) -> tuple[MeasuredRespons
         option = f"--columns f={next(iter(named or rising), 'NAME')},h={next(iter(complexes), 'NAME')}"
         hint = f"say which arrays: {option} (omega= for rad/s; re=, im=; mag=, phase_deg=; or t=, u=, y=)"
         if not (named or complexes) and (time := rising.keys() & {"t", "time", "T", "Time"}):
-            hint = f"of a record in time, one channel each: --columns t={min(time)},u=NAME,y=NAME"
+            hint = f"of a time record, one channel each: --columns t={min(time)},u=NAME,y=NAME"
         key, matrix = largest_matrix(arrays)
         timed = option_in_time(list(matrix.T)) if key else ""
         timed = f"{timed} in '{key}'" if timed else WITHOUT_TIME.format("u=NAME,y=NAME,dt=SECONDS")

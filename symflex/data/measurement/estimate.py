@@ -1,4 +1,4 @@
-"""Frequency responses of records in time, by scipy's spectral estimates.
+"""Frequency responses of time records, by scipy's spectral estimates.
 
 Input: a :class:`~symflex.data.measurement.record.TimeRecord`.
 Output: a :class:`~symflex.data.measurement.MeasuredResponse` per output; its guesses say how it was made.

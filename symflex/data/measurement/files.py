@@ -64,7 +64,7 @@ def read_measurement(
     estimate: Estimate | None = None,
     axis: tuple[float, float] | None = None,
 ) -> tuple[MeasuredResponse, ...]:
-    """Read the frequency responses of a data file, or estimate those of a record in time.
+    """Read the frequency responses of a data file, or estimate those of a time record.
 
     Parameters
     ----------
@@ -74,9 +74,9 @@ def read_measurement(
     columns : str
         What the columns are, if the file does not state it or is wrong: words such as ``f,re,im`` or
         ``f_khz,-,mag_db,phase_deg`` for text and matrices, ``f=NAME,h=NAME`` for named arrays, ``s21`` or
-        ``z11`` for Touchstone files; ``t,u,y`` for records in time.
+        ``z11`` for Touchstone files; ``t,u,y`` for time records.
     estimate : Estimate, optional
-        How responses of a record in time are estimated.
+        How responses of a time record are estimated.
     axis : (float, float), optional
         First frequency and step [Hz] of a file without frequencies.
 
@@ -149,7 +149,7 @@ def record_in_time(path: str | Path, columns: str = "") -> TimeRecord | None:
 def responses_in_time(
     path: str | Path, columns: str = "", estimate: Estimate | None = None
 ) -> tuple[MeasuredResponse, ...] | None:
-    """Return the responses of a record in time, ``None`` if the columns of a file do not say time."""
+    """Return the responses of a time record, ``None`` if the columns of a file do not say time."""
     record = record_in_time(path, columns)
     return None if record is None else responses_of(record, estimate or Estimate())
 
@@ -207,7 +207,7 @@ def prepared(
             chosen = replace(chosen, averages=averages)
         if window == "exponential" and not chosen.is_record:
             hint = "say its time constant: --window exponential:SECONDS"
-            raise refused(f"'{response.name}' is not a record in time", hint)
+            raise refused(f"'{response.name}' is not a time record", hint)
         if window is not None and not chosen.is_record:
             chosen = replace(chosen, window=window_of(window))
         if chosen.is_record and chosen.coherence is not None and not chosen.averages:

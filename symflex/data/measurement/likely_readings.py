@@ -28,7 +28,7 @@ _NO_WORD = re.compile(
 HINT: Final = (
     "columns: frequency_hz; re, im or magnitude_db, phase_deg or magnitude, phase_rad; coherence if known"
 )
-WITHOUT_TIME: Final = "of a record in time, say the sampling time: --columns {}"
+WITHOUT_TIME: Final = "of a time record, say the sampling time: --columns {}"
 WITHOUT_AXIS: Final = "if the file has no frequencies, --from HZ --step HZ give them"
 UNDECIDED: Final = 1.5  # natural logarithm of how much less causal the other reading has to be
 LEAST_LEVELS: Final = 1.0  # range [dB] below which positive numbers are rather ratios
@@ -112,14 +112,14 @@ def signals(columns: Sequence[npt.NDArray[Any]], end: str = "") -> str:
 
 @np.errstate(all="ignore")
 def option_in_time(columns: Sequence[npt.NDArray[Any]], before: int = 0) -> str:
-    """Return the option that reads columns as a record in time, nothing where the first is no time."""
+    """Return the option that reads columns as a time record, nothing where the first is no time."""
     times = columns[0].real
     if counts(times):
-        return f"--columns {'-,' * (before + 1)}{signals(columns[1:], ',dt=SECONDS of a record in time')}"
+        return f"--columns {'-,' * (before + 1)}{signals(columns[1:], ',dt=SECONDS of a time record')}"
     steps, usual = np.diff(times), np.median(np.diff(times))
     if times[0] and not np.median(np.abs(steps - usual)) <= EVENLY * usual:
         return ""
-    return f"--columns {'-,' * before}t,{signals(columns[1:], ' of a record in time')}"
+    return f"--columns {'-,' * before}t,{signals(columns[1:], ' of a time record')}"
 
 
 def _is_same(values: Real, other: Real) -> bool:

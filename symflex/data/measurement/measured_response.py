@@ -49,7 +49,7 @@ class MeasuredResponse:
     guesses : tuple of str
         What was assumed when the file was read, because it does not state it.
     is_record : bool
-        True when it was estimated from a record in time.
+        True when it was estimated from a time record.
     is_magnitude : bool
         True when no phase was measured: that of the values belongs to a minimum-phase function.
     cut_off_s : float, optional

@@ -1,4 +1,4 @@
-"""Records in time, as data loggers, oscilloscopes and simulators save them: which column is what.
+"""Time records, as data loggers, oscilloscopes and simulators save them: which column is what.
 
 Input: a file with a column of time, ``time,u,y``, or one with a sampling time or rate above its columns.
 Output: a :class:`TimeRecord` with even samples, from which :mod:`symflex.data.measurement.estimate` makes
@@ -272,7 +272,7 @@ def _numbers(
     wrong = np.asarray(np.delete(empty, sparse, axis=1).any(axis=1), bool)
     if not are_few(wrong):
         place = table.line(lines[int(np.argmax(wrong))])
-        hint = "a record in time has a number in every column; --columns t,-,u,y leaves columns out"
+        hint = "a time record has a number in every column; --columns t,-,u,y leaves columns out"
         raise DataError(Diagnostic("SF603", "a line contains something other than numbers", place, hint))
     if left := [i for i in sparse if i not in unused]:
         many = ", ".join(str(i + 1) for i in left[:12])
@@ -349,7 +349,7 @@ def _asked(
         if word in ("-", "") or i == at:
             continue
         if word.rstrip("0123456789") not in made:
-            message = f"--columns: unknown column '{word[:40]}' of a record in time"
+            message = f"--columns: unknown column '{word[:40]}' of a time record"
             raise refused(message, "t (or t_ms, t_us), u, y, -, dt=0.01")
         values = _resampled(times, channels[i][1], step) if kept else channels[i][1]
         if values.size < FEWEST_SAMPLES or not np.isfinite(values).all():
@@ -357,7 +357,7 @@ def _asked(
             raise DataError(Diagnostic("SF603", message, None, "choose another column, or leave lines out"))
         made[word.rstrip("0123456789")].append((_plain(channels[i][0], i), values))
     if len(made["u"]) > 1 or not made["y"]:
-        message = "--columns of a record in time has one t, at most one u, and one y or more"
+        message = "--columns of a time record has one t, at most one u, and one y or more"
         raise refused(message, "such as t,u,y or u,y,dt=0.01")
     return TimeRecord(stem, step, tuple(made["y"]), next(iter(made["u"]), None), tuple(guesses))
 

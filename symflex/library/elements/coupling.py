@@ -257,7 +257,7 @@ class PlanetaryGear(Element):
 
 
 class Piston(Element):
-    """A piston or diaphragm of area A [m^2]: its motion pushes air or liquid, and is pushed by the pressure.
+    """A piston or diaphragm of area A [m^2]: it moves air or liquid, and the pressure acts on it.
 
     When the mover moves along x, ``q = A*s*x`` [m^3/s] flows into the first node of ``chamber`` and, if
     there is a second, out of that. The force on the mover is ``f = -A*(p_1 - p_2)`` [N]. Source: Beranek
@@ -374,7 +374,7 @@ class CoupledInductors(Element):
 class OpAmp(Element):
     """An operational amplifier: ``out = A(s)*(p - n)``, with no input current and no output resistance.
 
-    Without ``A`` and ``f_u`` it is ideal: feedback keeps both inputs at one voltage. With a DC gain A
+    Without ``A`` and ``f_u`` it is ideal: feedback keeps both inputs at the same voltage. With a DC gain A
     and a unity-gain frequency f_u, ``1/A(s) = 1/A + s/(2 pi f_u)``; the term of a parameter that is
     not given is zero. ``i`` [A] is delivered at the output. Source: Sedra & Smith 2004, Microelectronic
     Circuits, chapter 2.

@@ -111,7 +111,7 @@ class LineElement(Element):
 
 
 class Rod(LineElement):
-    """A uniform rod of length l [m] and cross-section A [m^2] in tension and compression.
+    """A uniform rod of length l [m] and cross-sectional area A [m^2] in tension and compression.
 
     ``f`` [N] is the force the rod delivers at its second end. ``eta`` [s] is Kelvin-Voigt damping,
     ``c_f`` and ``k_f`` a viscous and an elastic foundation per length.
@@ -123,7 +123,7 @@ class Rod(LineElement):
     ports = (Port("between", 2, "translation", "the two ends, the second one l further along x"),)
     parameters = (
         ParameterPort("E", "Pa", "Young's modulus", sign="positive"),
-        ParameterPort("A", "m^2", "a cross-section", sign="positive", varies=True),
+        ParameterPort("A", "m^2", "a cross-sectional area", sign="positive", varies=True),
         ParameterPort("rho", "kg/m^3", "a density", sign="nonnegative"),
         ParameterPort("l", "m", "a length"),
         ParameterPort("eta", "s", "a Kelvin-Voigt damping time constant", "0", sign="nonnegative"),
@@ -172,7 +172,7 @@ class Shaft(LineElement):
 
 
 class String(LineElement):
-    """A string of length l [m], cross-section A [m^2] and tension N [N], in transverse motion.
+    """A string of length l [m], cross-sectional area A [m^2] and tension N [N], in transverse motion.
 
     ``f`` [N] is the transverse force the string delivers at its second end. ``c_f`` and ``k_f`` are a
     viscous and an elastic foundation per length.
@@ -185,7 +185,7 @@ class String(LineElement):
     parameters = (
         ParameterPort("N", "N", "a tension", sign="positive", varies=True),
         ParameterPort("rho", "kg/m^3", "a density", sign="nonnegative"),
-        ParameterPort("A", "m^2", "a cross-section", sign="nonnegative", varies=True),
+        ParameterPort("A", "m^2", "a cross-sectional area", sign="nonnegative", varies=True),
         ParameterPort("l", "m", "a length"),
         ParameterPort("c_f", "N*s/m^2", "a viscous foundation", "0", varies=True),
         ParameterPort("k_f", "N/m^2", "an elastic foundation", "0", varies=True),
@@ -201,7 +201,7 @@ THEORIES = ("euler-bernoulli", "rayleigh", "timoshenko")
 
 
 class Beam(LineElement):
-    """A uniform beam of length l [m], cross-section A [m^2] and second moment of area I [m^4] in bending.
+    """A uniform beam in bending: length l [m], cross-sectional area A [m^2], second moment of area I [m^4].
 
     It joins planar nodes, the second one l further along x. ``f`` [N] and ``tau`` [N m] are the force and
     moment the beam delivers at its second end. ``eta`` [s] is Kelvin-Voigt damping: it multiplies E, and G
@@ -218,7 +218,7 @@ class Beam(LineElement):
         ParameterPort("E", "Pa", "Young's modulus", sign="positive"),
         ParameterPort("I", "m^4", "a second moment of area", sign="positive", varies=True),
         ParameterPort("rho", "kg/m^3", "a density", sign="nonnegative"),
-        ParameterPort("A", "m^2", "a cross-section", sign="nonnegative", varies=True),
+        ParameterPort("A", "m^2", "a cross-sectional area", sign="nonnegative", varies=True),
         ParameterPort("l", "m", "a length"),
         ParameterPort("eta", "s", "a Kelvin-Voigt damping time constant", "0", sign="nonnegative"),
         ParameterPort("c_f", "N*s/m^2", "a viscous foundation", "0", varies=True),
@@ -263,15 +263,15 @@ class FrameMember(LineElement):
     """A uniform member of a plane frame: it bends as a beam of any theory, and stretches as a rod.
 
     It joins nodes in the plane. The second one is l [m] away from the first, at an angle [rad] from the x
-    axis, counted from x to y. ``f_x``, ``f_y`` [N] and ``tau`` [N m] are the force and moment it delivers at
-    its second end, along the axes x and y. At a point of the member, ``x``, ``y`` and ``theta`` are its
-    motion along these axes; ``u`` and ``v`` are its motion along the member and across it, to the left of its
-    direction. ``f_x``, ``f_y``, ``tau``, ``f_u`` and ``f_v`` at a point are exerted by the part beyond it on
-    the part before it: ``f_u = EA u'`` is positive in tension, ``tau = EI v''`` and ``f_v = -EI v'''`` in the
-    Euler-Bernoulli theory. ``N`` [N] is a static axial force, positive in tension. ``c_f`` and ``k_f`` are a
-    foundation per length that acts along and across the member. An ``inextensible`` member only bends.
-    Everything else is as for ``beam`` and ``rod``. Valid for small motions, in which bending and stretching
-    do not act on each other. Source: Clough & Penzien 1993, Dynamics of Structures, chapters 11 and 17.
+    axis, measured from x towards y. ``f_x``, ``f_y`` [N] and ``tau`` [N m] are the force and moment it
+    delivers at its second end, along the axes x and y. At a point of the member, ``x``, ``y`` and ``theta``
+    are its motion along these axes; ``u`` and ``v`` are its motion along the member and across it, to the
+    left of its direction. ``f_x``, ``f_y``, ``tau``, ``f_u`` and ``f_v`` at a point are exerted by the part
+    beyond it on the part before it: ``f_u = EA u'`` is positive in tension, ``tau = EI v''`` and ``f_v = -EI
+    v'''`` in the Euler-Bernoulli theory. ``N`` [N] is a static axial force, positive in tension. ``c_f`` and
+    ``k_f`` are a foundation per length that acts along and across the member. An ``inextensible`` member only
+    bends. Everything else is as for ``beam`` and ``rod``. Valid for small motions, in which bending and
+    stretching are uncoupled. Source: Clough & Penzien 1993, Dynamics of Structures, chapters 11 and 17.
     """
 
     type_name = "frame"

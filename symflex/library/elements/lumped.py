@@ -262,7 +262,7 @@ class FlowSource(ThroughSource):
 
 
 class PressureSource(AcrossSource):
-    """A pressure p [Pa] of a node, or between two nodes; ``q`` [m^3/s] is delivered into the first."""
+    """A pressure p [Pa] at a node, or between two nodes; ``q`` [m^3/s] is delivered into the first."""
 
     type_name = "pressure_source"
     summary = "Pressure imposed on a node"
@@ -299,7 +299,7 @@ class HeatSource(ThroughSource):
 
 
 class TemperatureSource(AcrossSource):
-    """A temperature T [K] of a node, or between two; ``phi`` [W] is delivered into the first."""
+    """A temperature T [K] at a node, or between two; ``phi`` [W] is delivered into the first."""
 
     type_name = "temperature_source"
     summary = "Temperature imposed on a node"

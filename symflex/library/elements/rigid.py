@@ -221,7 +221,7 @@ class Fixed(Element):
     """Everything at the node is zero; ``f``, ``f_x``, ``tau`` or ``i`` is the reaction delivered to the node.
 
     At a component of a planar node, such as ``p.x``, only that component is held. Between two nodes it is a
-    rigid joint: both move alike, and the reaction is delivered to the first.
+    rigid joint: both move together, and the reaction is delivered to the first.
     """
 
     type_name = "fixed"

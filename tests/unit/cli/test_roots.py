@@ -17,6 +17,7 @@ def test_the_first_transfer_function_is_shown_and_the_others_named_on_stderr(she
 def test_text_shows_a_conjugate_pair_on_one_line(shell):
     lines = shell("roots", "x.toml", "--tf", "X/F", "--digits", "4").out.splitlines()
     assert "  zeros: none" in lines
+    assert "  poles: none, there are fewer than 9\n" in shell("roots", "x.toml", "--mode", "9").out
     # sqrt(18/2) = 3 rad/s, and 3/(2 pi) = 0.477465 Hz
     assert [line.split() for line in lines if "+-" in line] == [["0", "+-3.000", "0", "0.477465", "0"]]
 

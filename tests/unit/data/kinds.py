@@ -1,4 +1,4 @@
-"""Statistics of fits to data of every kind: complex, magnitude alone, records in time, exact, with coherence.
+"""Statistics of fits to data of every kind: complex, magnitude alone, time records, exact, with coherence.
 
 Sums over one to three modes, made without symflex, are written as instruments and simulators write them,
 read, and fitted with the number of resonances chosen. ``python -m tests.tools.fits kinds 200``
@@ -53,7 +53,7 @@ def of_lines(random, number, kind):
 
 
 def of_records(random, number, kind):
-    """Return a text of a record in time, and the poles; white noise is added.
+    """Return a text of a time record, and the poles; white noise is added.
 
     A step comes to rest, a hammer's decay does in every second record, noise drives all of its record, and a
     chirp all but the last fifth; noise is 0.1 to 1 % of the output, 1 to 5 % where noise drives.

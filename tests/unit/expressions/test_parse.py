@@ -251,6 +251,7 @@ SLIPS = [
     ("1_000", 1, "_", "unexpected '_'", "a number is written without '_'"),
     ("a % b", 2, "%", "unexpected '%'", None),
     ("a\x00b", 1, "\x00", "unexpected", None),
+    ("a.^2", 2, "^", "unexpected '^' after '.'", "write '^' in place of '.^'"),
     ("(a", 0, "(", "this '(' is never closed", "add a ')'"),
     ("sqrt(a*(b+c)", 4, "(", "this '(' is never closed", "add a ')'"),
     ("(a b", 3, "b", "expected an operator or ')'", "write 'a*b'"),

@@ -127,7 +127,7 @@ def test_products_stand_in_place_of_their_factors():
 def test_what_a_product_makes_spare_or_leaves_open_is_refused():
     for given, message in (
         ('EI = 6, E = "E", rhoA = 35', "beam 'arm' has EI in place of E*I and also E"),
-        ('EI = 6, rho = "rho"', "beam 'arm' lacks A, a cross-section"),
+        ('EI = 6, rho = "rho"', "beam 'arm' lacks A, a cross-sectional area"),
         ('theory = "timoshenko", EI = 6, rho = "rho", kappaGA = 14', "beam 'arm' lacks I, a second moment"),
         ('theory = "timoshenko", EI = 6, rhoA = 35, kappaGA = 14', "beam 'arm' lacks rhoI, a rotary inertia"),
         ("EI = 6, rhoA = 35, kappaGA = 14", "kappaGA of beam 'arm' does not go with"),

@@ -173,6 +173,7 @@ def test_a_refusal_says_what_to_write():
         ("0.006 kg.m^2", "kg*m^2"), ("3 lb-ft", "'3 lbf*ft'"), ("3 oz-in^2", "'3 oz*in^2'"),
         ("2 N-m-s/rad", "'2 N*m*s/rad'"), ("6'2\"", "feet as 'ft'"), ("1 kg m-1", "write '^-1'"),
         ("1 000 m", "digits are not grouped"), ("1'000 m", "digits are not grouped"), ("5/s", "'5 1/s'"),
+        ("8 N/mm^ ", "after '^'"),
         ("5*mm", "'5 mm'"), ("kg", "'1 kg'"), ("5 m^1.5", "'m^(1/2)'"), ("5 J/kg K", "'/(a*b)'"),
         ("1/2m", "'3kg'"), ("5 2/s", "1 in '1/s'"), ("", "'35 kN/m'"), ("2 pi", "'2*pi rad/s'"),
     ]:  # fmt: skip

@@ -1,4 +1,4 @@
-"""Records in time: which column is what, and frequency responses estimated from them."""
+"""Time records: which column is what, and frequency responses estimated from them."""
 
 from __future__ import annotations
 
@@ -131,7 +131,7 @@ def test_the_damping_of_an_exponential_window_is_taken_out_of_a_fit(tmp_path):
     (response,) = prepared(read_measurement(path), window="exponential:0.4")
     made.write_bytes(measurement_bytes(response, made))
     assert read_measurement(made)[0].window == "exponential:0.4"
-    with pytest.raises(UsageError, match="is not a record in time"):
+    with pytest.raises(UsageError, match="is not a time record"):
         prepared(read_measurement(path), window="exponential")
 
 
