@@ -167,9 +167,8 @@ def build(cell: SymbolCell, spacing: Spacing, width: float = 0.0) -> Built:
     if part.type_name == "planetary_gear":  # its shaft is on the side of one end; both others reach its ring
         is_reversed = len(cell.right) == 1
     elif part.type_name == "transformer" and {e.domain for e in part.ends} == {"rotation", "translation"}:
-        is_reversed = any(
-            e.domain == "rotation" for e in cell.right
-        )  # screw and rack have their shaft on its side
+        # Screw and rack have their shaft on its side.
+        is_reversed = any(e.domain == "rotation" for e in cell.right)
     strokes = _casing(cell, length) if cell.is_boxed else strokes_of(part, length, is_reversed=is_reversed)
     symbol = Placed(part.kind, part.name, strokes).moved(start, 0)
     items = [*_wires(cell, (0.0, begin, start), (width, end, start + length)), symbol]
