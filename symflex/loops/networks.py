@@ -94,11 +94,11 @@ class NetworkLoop:
     @property
     def radius(self) -> float:
         """That of a disc [rad/s] that contains twice the requested modes, or all before roots accumulate."""
-        return DiscSearch(self.cramer, DIGITS, (False, False)).radius_of(4 * self.modes) / WIDER
+        return DiscSearch(self.cramer).radius_of(4 * self.modes) / WIDER
 
     def in_disc(self, radius: float) -> LoopInDisc:
         """Return A and B in a disc about 0 [rad/s], if they are enclosed there."""
-        return LoopInDisc(*DiscSearch(self.cramer, DIGITS, (False, False)).series(radius))
+        return LoopInDisc(*DiscSearch(self.cramer).series(radius))
 
 
 AnyLoop = Loop | NetworkLoop

@@ -14,14 +14,14 @@ from flint import fmpz_poly
 
 from symflex.algebra import LAPLACE, Factored, by_powers
 from symflex.algebra.exponential_sum import Argument, arguments_of, exponential_sum
+from symflex.balls import precision
 from symflex.roots.functions.kernel_function import has_kernels
-from symflex.roots.polynomial_roots import find_polynomial_roots
-from symflex.roots.problem import is_complex, problem_of
-from symflex.roots.root import Root, overlap
+from symflex.roots.problem import is_complex, polynomial_in_s
+from symflex.roots.root import Root
 from symflex.transfer import BoundTransferFunction
 
 
-def is_shared_exactly(bound: BoundTransferFunction, root: Root, digits: int) -> bool:
+def is_shared_exactly(bound: BoundTransferFunction, root: Root) -> bool:
     """Tell whether a root of ``s^2 + w^2`` on one side is proved to be one of the other, so many times."""
     for part, other in ((bound.den, bound.num), (bound.num, bound.den)):
         if is_complex(part):
@@ -30,7 +30,9 @@ def is_shared_exactly(bound: BoundTransferFunction, root: Root, digits: int) -> 
             powers, value = by_powers(part.ring, factor), Factored.polynomial(part.ring, factor)
             if powers.keys() != {0, 2} or has_kernels(value, bound.kernels):
                 continue
-            if any(overlap(root, x) for x in find_polynomial_roots(problem_of(bound, [(factor, 1)]), digits)):
+            with precision(root.working_bits()):
+                vanishes = polynomial_in_s(bound, factor).enclosure()(root.enclosure()).contains(0)
+            if vanishes:
                 rest, lead = (Factored.polynomial(part.ring, powers[n]) for n in (0, 2))
                 return _order(bound, other, rest / lead) >= root.multiplicity
     return False

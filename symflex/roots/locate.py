@@ -5,7 +5,7 @@ from __future__ import annotations
 from cmath import exp as cexp
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import chain
 from math import exp, inf, isfinite, pi
 
@@ -268,8 +268,8 @@ class _Searched:
     def __init__(
         self, bound: BoundTransferFunction, region: Region, digits: int, *, with_zeros: bool = True
     ) -> None:
-        self.bound, self.region, self.digits = bound, region, digits
-        self._with_zeros = with_zeros
+        self.bound, self.region = bound, region
+        self._side, self._with_zeros = partial(Side, bound, digits=digits), with_zeros
         match region:
             case Modes(count) | Mode(count):
                 bound.expect(count)
@@ -281,11 +281,11 @@ class _Searched:
 
     def find(self) -> None:
         """Find the roots of all sides."""
-        bound, digits, where = self.bound, self.digits, self.region
+        bound, where = self.bound, self.region
         if not bound.ratio.is_zero:
-            self.sides.append(Side(bound, bound.den, digits))
+            self.sides.append(self._side(bound.den))
             above = bound.num if self._with_zeros else Factored.number(bound.ratio.ring, 1)
-            self.sides.append(Side(bound, above, digits))
+            self.sides.append(self._side(above))
         if isinstance(where, Mode):
             for side in self.sides:
                 side.numbered(where.number)
@@ -294,11 +294,11 @@ class _Searched:
         # Where a pole lies where wavenumbers vanish or meet, a zero may lie, too.
         degenerate = [] if self._with_zeros else [point for point in self._degenerate if not point.is_zero]
         if any(overlap(root, point) for side in self.sides for root in side.roots for point in degenerate):
-            self.sides[1] = Side(bound, bound.num, digits)
+            self.sides[1] = self._side(bound.num)
             shared = _find(self.sides, where)
         # Modes are of the poles; what cancelled has none of its own.
         self._within = hidden_region(where, self.chosen()[0])
-        hidden = Side(bound, cancelled(bound), digits, is_hidden=True)
+        hidden = self._side(cancelled(bound), is_hidden=True)
         self.sides.append(hidden)
         _find((hidden,), self._within)
         self._hide(shared)
@@ -324,7 +324,7 @@ class _Searched:
         ]
         self.hidden += self._points.hidden(_chosen(self._points.distinct, within))
         self.hidden += [
-            HiddenRoot(root, "coincident", is_exact=is_shared_exactly(self.bound, root, self.digits))
+            HiddenRoot(root, "coincident", is_exact=is_shared_exactly(self.bound, root))
             for root in _chosen(shared, within)
             if not any(overlap(root, other) for other in (*self._degenerate, *gone))
         ]
@@ -408,12 +408,10 @@ class _Searched:
         for place, part in (*poles, (2 * len(poles), product)):
             is_hidden, is_searched, known = part is product, place < len(self.sides), list[Root]()
             try:
-                side = (
-                    self.sides[place] if is_searched else Side(bound, part, self.digits, is_hidden=is_hidden)
-                )
+                side = self.sides[place] if is_searched else self._side(part, is_hidden=is_hidden)
                 known = [*side.roots, *(h.root for h in coincident if h.is_proved is is_hidden)]
                 is_plain = rests or is_over or side.is_finite
-                end = limit if not proof else None if is_plain else last_on_axis(bound, part, side)
+                end = limit if not proof else None if is_plain else last_on_axis(side)
                 has_more = has_more or not (side.is_finite or (proof and end is not None))
                 is_endless = not side.is_finite and end is None  # of what cancelled, which is last
                 if is_over or (proof and end is None):
@@ -425,7 +423,7 @@ class _Searched:
                     gaps.append(RightHalfPlane((), unproved or ""))
                     continue
                 reached = 0.0 if unproved else self._reached(side)
-                whole = search_right(bound, part, side, known, reached, self.digits, end)
+                whole = search_right(side, known, reached, end)
             except SymflexError as error:
                 has_more, known = True, known if proof else []
                 sides.append(tuple(known))

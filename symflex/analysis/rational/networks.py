@@ -45,7 +45,7 @@ class NetworkSides:
     def _search(self, digits: int) -> tuple[DiscSearch, float]:
         """Return a search to so many digits, and the radius of its disc."""
         bits = SERIES_BITS + 2 * bits_for_digits(digits)
-        search = DiscSearch(self._cramer, digits, (False, False), bits)
+        search = DiscSearch(self._cramer, series_bits=bits)
         return search, WIDER * self.reach or search.radius_of(FEWEST_MODES)
 
     @contextmanager

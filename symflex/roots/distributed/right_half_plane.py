@@ -14,7 +14,6 @@ from math import log, pi
 
 from flint import acb
 
-from symflex.algebra import Factored
 from symflex.errors import BudgetError
 from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.distributed.far_out import axis_tail, right_tail
@@ -22,7 +21,6 @@ from symflex.roots.distributed.side import Side
 from symflex.roots.pole_zero_map import count_right, is_right
 from symflex.roots.region import Band, Rectangle, Region
 from symflex.roots.root import Root
-from symflex.transfer import BoundTransferFunction
 
 ACCUMULATING = "poles accumulate in the right half-plane"
 DEGENERATE = "a root where wavenumbers meet may not be a pole"
@@ -42,13 +40,7 @@ class RightHalfPlane:
 
 
 def search_right(
-    bound: BoundTransferFunction,
-    part: Factored,
-    side: Side,
-    known: Sequence[Root],
-    reached: float,
-    digits: int,
-    limit: float | None = None,
+    side: Side, known: Sequence[Root], reached: float, limit: float | None = None
 ) -> RightHalfPlane:
     """Count and find the roots on the right: all are ``known`` to ``reached``, none is beyond a ``limit``."""
     if side.is_finite:
@@ -77,7 +69,7 @@ def search_right(
         region: Region = Rectangle(Fraction(0), end, -end, end)
         if is_even and not is_mirrored:
             region = Band(Fraction(0), Fraction(radius * MARGIN / (2 * pi)))
-        again = Side(bound, part, digits)
+        again = side.anew()
         try:
             again.search(region)
             # Roots of undamped systems lie on the border, and beyond what was asked for it is not followed.
@@ -97,10 +89,10 @@ def search_right(
     return _known_to(seen, unproved, radius)
 
 
-def last_on_axis(bound: BoundTransferFunction, part: Factored, side: Side) -> float | None:
+def last_on_axis(side: Side) -> float | None:
     """Return a radius [rad/s] beyond which no root lies on the axis, None without one or only far off."""
     most = side.function.frequency_of(WAVES) * FURTHER
-    radius = axis_tail(bound, part, most / LOWER)
+    radius = axis_tail(side.bound, side.part, most / LOWER)
     return radius if radius < most else None
 
 

@@ -64,7 +64,7 @@ class Side:
         is_hidden: bool = False,
         engines: Iterable[str] = SEARCHES,
     ) -> None:
-        self._bound = bound
+        self.bound, self.part = bound, part
         self._engines = tuple(engines)
         self._digits = digits
         self.holes = holes_about(accumulation_points(bound))
@@ -97,6 +97,10 @@ class Side:
         self._most = (self.engine, self._search, self._located)
         self.roots = list(self._located)
         self.missing = 0
+
+    def anew(self) -> Side:
+        """Return the same product before it was searched, as one that is not hidden."""
+        return Side(self.bound, self.part, self._digits)
 
     @property
     def is_finite(self) -> bool:
@@ -131,7 +135,7 @@ class Side:
         if modes > MODES_LIMIT:
             message = f"at most {MODES_LIMIT} modes of a distributed function are searched, not {modes}"
             raise BudgetError(Diagnostic("SF505", message, None, "ask for a band"))
-        self._bound.expect(modes, exp(min(radius, HIGHEST)))
+        self.bound.expect(modes, exp(min(radius, HIGHEST)))
         while (search := self._search) is not None:
             if isinstance(search, RootSearch):
                 self._innermost = search.smallest()
@@ -328,7 +332,7 @@ class Side:
 
         If it is one of a root ``r = s^(1/q)``, count those in the sector of r that is right of it in s.
         """
-        if (sheets := self._bound.sheets) == 1:
+        if (sheets := self.bound.sheets) == 1:
             return self._count.right(high)
         return self._count.right(high, pi / (2 * sheets) * WIDER_ANGLE)
 

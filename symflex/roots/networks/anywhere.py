@@ -45,7 +45,7 @@ def roots_in_disc(
     cramer: CramerEquations, region: Region, digits: int, *, symmetric: tuple[bool, bool]
 ) -> DiscRoots:
     """Return all roots in a disc that contains what the region asks for; UndecidedError if not proved."""
-    search = DiscSearch(cramer, digits, symmetric, most_zeros=most_zeros(cramer))
+    search = DiscSearch(cramer, symmetric, most_zeros=most_zeros(cramer))
     match region:
         case Band(_, high):
             return _roots(search, 2 * pi * float(high) * WIDER, digits)

@@ -78,7 +78,7 @@ def locate_in_network(
     sought = _Sought(name, region, digits, is_default, proof, unsure)
     if network is None or not (network.driven and network.read):
         return sought.in_disc(cramer)
-    return sought.without_losses(_NetworkSearch(network, cramer, region, digits))
+    return sought.without_losses(network, cramer)
 
 
 def locate_quotient(cramer: CramerEquations, name: str, region: Region, digits: int) -> PoleZeroMap:
@@ -107,11 +107,12 @@ class _Sought:
         said = f"{self.proof}, but it may vibrate forever; {reason}" if self.proof else reason
         return self.located(CRAMER, ((), (), ()), judge([], said), reasons=[reason], code=code)
 
-    def without_losses(self, search: _NetworkSearch) -> PoleZeroMap:
+    def without_losses(self, network: Network, cramer: CramerEquations) -> PoleZeroMap:
         """Count the poles, and the zeros if the output is what the input drives; else find all in a disc."""
-        in_disc = None if search.network.is_colocated else self.in_disc(search.cramer)
+        in_disc = None if network.is_colocated else self.in_disc(cramer)
         if in_disc is not None and in_disc.certificate.reason in (None, TOUCHING):
             return in_disc
+        search = _NetworkSearch(network, cramer, self.region, self.digits)
         reasons: list[str] = []
         code: str | None = None
         try:
