@@ -217,7 +217,7 @@ def sweep(spec: Specification, given: SweepOptions) -> int:
     from symflex.cli.progress import ProgressBar
     from symflex.sweep import run
     from symflex.sweep.files import check_writable
-    from symflex.sweep.sweep import sweep_json
+    from symflex.sweep.labelled import sweep_json
 
     if given.workers and given.scheduler:
         raise refused("give only one of --workers and --scheduler")

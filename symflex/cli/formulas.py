@@ -248,7 +248,7 @@ def export(spec: Specification, given: ExportOptions) -> int:
     from symflex.codegen.exporters import SUMMARIES
     from symflex.codegen.latex import LatexExporter
     from symflex.codegen.module_text import identifiers
-    from symflex.files.write import check_folder, check_writable, write_folder
+    from symflex.files.write import check_folder, check_writable, write_tree
 
     if given.target not in SUMMARIES:
         meant = TARGETS_MEANT.get(given.target.lower(), given.target)
@@ -275,7 +275,7 @@ def export(spec: Specification, given: ExportOptions) -> int:
         texts, warnings = exporter.export_files(model, derived)
         for warning in warnings:
             note(f"warning: {warning}")
-        write_folder(Path(given.output), texts)
+        write_tree(Path(given.output), {name: text.encode() for name, text in texts.items()})
         note(f"wrote {len(texts)} files to {given.output}")
         return 4 if given.strict and warnings else 0
     stem = Path(given.output).stem if given.output else identifiers({"": Path(spec.path).stem}, ())[""]

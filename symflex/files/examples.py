@@ -13,8 +13,7 @@ import tomllib
 from pathlib import Path
 from typing import Final
 
-from symflex.errors import Diagnostic, UsageError, refused
-from symflex.errors.diagnostic import nearest
+from symflex.errors import Diagnostic, UsageError, nearest, refused
 
 FOLDERS: Final[dict[str, str]] = {
     "classics": "Beams, rods, shafts and a car of the textbooks",

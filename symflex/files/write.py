@@ -53,17 +53,6 @@ def _check_entry(folder: Path, name: str) -> None:
         raise _unwritable(name, f"nothing can be written into '{folder}'")
 
 
-def write_folder(folder: Path, files: Mapping[str, str]) -> None:
-    """Write text files, by name, into a folder, made when missing, each as a whole or not at all; SF903."""
-    for name in files:
-        if name in ("", ".", "..") or Path(name).name != name or "\\" in name or "\0" in name:
-            raise ValueError(f"{name!r} is not the name of a file")
-    with _refusals(os.fspath(folder)):
-        Path(folder).mkdir(exist_ok=True)
-    for name, text in files.items():
-        write_atomically(Path(folder) / name, text.encode())
-
-
 def write_tree(folder: Path, files: Mapping[str, bytes]) -> None:
     """Write files into a folder and its subfolders, which are made when they are missing.
 

@@ -6,6 +6,6 @@ workers, nor the order in which they finish, nor a restart in between changes a 
 """
 
 from symflex.sweep.design import Design, Range, Task, design_of, read_design
+from symflex.sweep.labelled import Labelled, Sweep
 from symflex.sweep.points import QUANTITIES
 from symflex.sweep.run import chunk_size, plan_sweep, run_sweep, sweep, sweep_key, sweep_task
-from symflex.sweep.sweep import Labelled, Sweep

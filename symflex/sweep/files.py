@@ -28,8 +28,8 @@ from symflex.files import write
 from symflex.files.write import write_atomically
 from symflex.model.spec.read import read_bytes
 from symflex.sweep.design import Array, Rows
+from symflex.sweep.labelled import DRAW, FREQUENCY, MODE, SCHEMA, STABILITY, Labelled, Sweep
 from symflex.sweep.points import MARGINS, VERDICTS
-from symflex.sweep.sweep import DRAW, FREQUENCY, MODE, SCHEMA, STABILITY, Labelled, Sweep
 
 NEW_YEAR = (1980, 1, 1, 0, 0, 0)  # the date of every file in an archive
 SIZE_LIMIT = 2**30  # bytes of a file that is read, and of what it contains

@@ -47,8 +47,8 @@ from symflex.sweep.design import (
 )
 from symflex.sweep.files import FolderJournal, check_writable, open_journal, sweep_bytes
 from symflex.sweep.follow import Between, Complexes
+from symflex.sweep.labelled import Sweep, assembled
 from symflex.sweep.points import PointStatus, logarithmic, solve_chunk
-from symflex.sweep.sweep import Sweep, assembled
 from symflex.transfer.of_model import pick_pairs
 
 CONNECT_SECONDS = 10
@@ -162,8 +162,7 @@ def run_sweep(
     executor. What the journal holds already is not solved again. ``progress`` is told how many points are
     done and how long the rest will take, by the ``clock`` [s]; ``attributes`` are kept with the result.
     """
-    size = chunk_size(design.count)
-    chunks = range(-(-design.count // size))
+    chunks = range(-(-design.count // chunk_size(design.count)))
     kept = {} if journal is None else {chunk: journal.read(chunk) for chunk in chunks}
     done: dict[int, Rows] = {chunk: rows for chunk, rows in kept.items() if rows is not None}
     missing = [chunk for chunk in chunks if chunk not in done]
@@ -291,8 +290,7 @@ def sweep_task(
     if of == "margins":
         pick_gain(model.parameters, gain)
     check_design(model, design)
-    lines = tuple(map(float, frequencies))
-    return Task(model, pair, of, design.names, region, lines, gain)
+    return Task(model, pair, of, design.names, region, tuple(map(float, frequencies)), gain)
 
 
 def sweep(

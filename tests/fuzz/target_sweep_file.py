@@ -11,7 +11,7 @@ from symflex.errors import SymflexError
 from symflex.options import SweepOptions
 from symflex.sweep import read_design, sweep_task
 from symflex.sweep.files import netcdf_bytes, npz_bytes, read_sweep
-from symflex.sweep.sweep import sweep_json
+from symflex.sweep.labelled import sweep_json
 from tests.fuzz.target_numpy_archive import packed, unpacked
 
 ROOMS = ("symflex.data.measurement", "symflex.sweep.files", "symflex.sweep")

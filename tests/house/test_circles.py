@@ -1,22 +1,21 @@
 """No two files import each other, straight or through others, imports for types and in functions included."""
 
-import ast
+import re
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 PACKAGE = Path(__file__).parents[2] / "symflex"
 
 
+_IMPORT = re.compile(r"^ *(?:from (symflex[\w.]*) import (?:\(([^)]*)\)|(.*))|import (symflex[\w.]*))", re.M)
+
+
 def _imported(file: Path, modules: dict[str, Path]) -> set[Path]:
     """Return the files a file imports names from; a package's ``__init__`` only hands names on."""
     files = set()
-    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.ImportFrom) and node.module:
-            names = [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
-        elif isinstance(node, ast.Import):
-            names = [alias.name for alias in node.names]
-        else:
-            continue
+    text = re.sub(" *#.*", "", file.read_text(encoding="utf-8"))
+    for package, several, one, module in _IMPORT.findall(text):
+        names = [package or module, *(f"{package}.{name}" for name in re.findall(r"\w+", several or one))]
         files |= {modules[name] for name in names if name in modules}
     return {each for each in files if each.name != "__init__.py"}
 

@@ -22,7 +22,7 @@ from symflex.options import StabilityOptions
 from symflex.report.document import Badge
 from symflex.report.sections.roots import loop_section, root_section
 from symflex.report.study import Study
-from symflex.sweep.sweep import sweep_json
+from symflex.sweep.labelled import sweep_json
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
