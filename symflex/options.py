@@ -853,8 +853,7 @@ def _gain(given: Stated | None, parameter: ModelParameter) -> Fraction | None:
     dimension = unit_of(parameter.unit).dimension if parameter.unit else None
     if quantity.unit and quantity.dimension != dimension:
         own = f"is in '{parameter.unit}'" if parameter.unit else "is a number without a unit"
-        message = f"'{parameter.name}' {own}, the range is in '{quantity.unit}'"
-        raise UsageError(Diagnostic("SF203", message))
+        raise UsageError(Diagnostic("SF203", f"'{parameter.name}' {own}, the range is in '{quantity.unit}'"))
     number, pi_power = quantity.cyclic() if parameter.cycles else quantity.angular()
     if pi_power:
         raise wrong

@@ -339,6 +339,5 @@ def summed(
     """Return the same of a polynomial, by its terms."""
     total = one * 0
     for monomial, coefficient in terms:
-        term = prod((raised(number(names[i]), e) for i, e in monomial), start=one * coefficient)
-        total = total + term
+        total = total + prod((raised(number(names[i]), e) for i, e in monomial), start=one * coefficient)
     return total

@@ -197,8 +197,7 @@ def propagate(base: Ring, demands: Sequence[tuple[Dispersion, Sequence[Factored]
         names = WAVENUMBER_NAMES.get(given.kind, ())
         law = replace(given, wavenumbers=tuple(f"{n}[{i}]" for n in names))
         dispersions.append(law)
-        lengths = distinct(wanted)
-        shape = _Shape(law, i, lengths)
+        shape = _Shape(law, i, distinct(wanted))
         shapes.append(shape)
         kernels += shape.kernels
     table = KernelTable(tuple(dispersions), tuple(kernels))

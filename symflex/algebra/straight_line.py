@@ -220,9 +220,7 @@ class Workbench:
             return defined
         key = (_GENERATOR, position)
         step = self._known.get(key)
-        if step is not None:
-            return step
-        return self._make(_GENERATOR, (position,), key)
+        return self._make(_GENERATOR, (position,), key) if step is None else step
 
     def define(self, position: int, value: int) -> None:
         """Let a generator stand for a value, under its own name."""
@@ -353,9 +351,7 @@ class Workbench:
             return self.multiply(self.number(1 / self.fraction(y)), x)
         key = (x << 32 | y) << 3 | _DIVIDE
         known = self._known.get(key)
-        if known is not None:
-            return known
-        return self._make(_DIVIDE, (x, y), key)
+        return self._make(_DIVIDE, (x, y), key) if known is None else known
 
     def power(self, x: int, exponent: int) -> int:
         """Return a non-negative integer power of a positive step."""
@@ -370,9 +366,7 @@ class Workbench:
             return self.negate(raised) if exponent % 2 else raised
         key = (_POWER, x, exponent)
         known = self._known.get(key)
-        if known is not None:
-            return known
-        return self._make(_POWER, (x, exponent), key)
+        return self._make(_POWER, (x, exponent), key) if known is None else known
 
     def fraction(self, x: int) -> Fraction:
         """Return the value of a number."""

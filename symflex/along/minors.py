@@ -16,8 +16,7 @@ from itertools import permutations
 
 from flint import fmpz_mpoly
 
-from symflex.algebra.dispersion import Dispersion, KernelTable
-from symflex.algebra.factored import Factored
+from symflex.algebra import Dispersion, Factored, KernelTable
 from symflex.algebra.ring import PolynomialMemo, Ring, coefficients_of, degree_in
 
 Lines = tuple[int, ...]
@@ -46,8 +45,7 @@ class MinorSums:
     @cached_property
     def matrices(self) -> tuple[tuple[Dispersion, Factored], ...]:
         """The law and the length of every matrix."""
-        laws = {(k.dispersion, k.length): None for k in self.table.kernels if k.function == "entry"}
-        return tuple(laws)
+        return tuple({(k.dispersion, k.length): None for k in self.table.kernels if k.function == "entry"})
 
     @cached_property
     def entries(self) -> Mapping[int, Minor]:

@@ -22,15 +22,13 @@ from dataclasses import dataclass
 from flint import acb, arb
 
 from symflex.balls import bits_for_digits, precision
-from symflex.errors import Diagnostic, ModelError, UsageError, counted
-from symflex.errors.diagnostic import nearest
+from symflex.errors import Diagnostic, ModelError, counted, no_such, refused
 from symflex.model.loss_factors import check_causal
 from symflex.print.notebook import Printed
 from symflex.print.roots import SHORT_DIGITS, TERMINAL_COLUMNS, PrintedRoot
 from symflex.print.text import Passage
-from symflex.roots import Everything, Modes, Root
+from symflex.roots import Everything, Modes, Root, decimals, figure
 from symflex.roots.locate import locate
-from symflex.roots.root import decimals, figure
 from symflex.transfer import AnyBoundFunction
 
 SCHEMA = "symflex.shape/1"
@@ -170,16 +168,14 @@ def input_shaper(
     ([0.0, 1.047198], (0.5, 0.5))
     """
     if kind not in SHAPERS:
-        hint = nearest(kind, SHAPERS) or "kinds: " + ", ".join(SHAPERS)
-        raise UsageError(Diagnostic("SF902", f"there is no shaper '{kind[:64]}'", None, hint))
+        raise no_such("shaper", kind, SHAPERS, "kinds")
     check_causal(bound.source.model, "an input shaper")
     region = Everything() if bound.is_rational else Modes(modes + MORE_MODES)
     located = locate(bound, region, digits + MORE_DIGITS).complete()
     ringing = [root for root in located.poles if root.im > 0]
     if modes < 1 or len(ringing) < modes:
         few = f"only {counted(len(ringing), 'oscillatory mode')}" if ringing else "no oscillatory mode"
-        message = f"{bound.name} has {few}, and --modes {modes} asks for {modes}"
-        raise UsageError(Diagnostic("SF902", message))
+        raise refused(f"{bound.name} has {few}, and --modes {modes} asks for {modes}")
     chosen = tuple(ringing[:modes])
     if not all(root.certified for root in chosen):
         message = f"modes of {bound.name} cannot be separated: none of them has a shaper of its own"
@@ -191,7 +187,7 @@ def input_shaper(
             own = _of_mode(bound, root, kind)
             if len(impulses) * len(own) > MOST_IMPULSES:
                 message = f"the modes together need more than {MOST_IMPULSES} impulses"
-                raise UsageError(Diagnostic("SF902", message, None, "shape fewer modes"))
+                raise refused(message, "shape fewer modes")
             impulses = [(t + u, a * b) for t, a in impulses for u, b in own]
         impulses.sort(key=lambda impulse: impulse[0].mid())
     note = "joint shapers are not computed: one for each mode, in series" if joint and modes > 1 else ""

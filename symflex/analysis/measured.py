@@ -14,7 +14,7 @@ import numpy.typing as npt
 from symflex.analysis.response import evaluate, respond
 from symflex.data.fitting import Base, ResonanceFit, fit_resonances
 from symflex.data.measurement import MeasuredResponse, MeasurementPlan, synthesise
-from symflex.errors import Diagnostic, UsageError
+from symflex.errors import refused
 from symflex.model import Model, load_with
 from symflex.model.loss_factors import check_causal
 from symflex.model.spec import read
@@ -39,11 +39,10 @@ def fit(measured: Sequence[MeasuredResponse], given: FitOptions) -> ResonanceFit
         for tf in given.tfs:
             if names.count(tf) != 1:
                 message = f"no response, or more than one, is called '{tf[:64]}'"
-                raise UsageError(Diagnostic("SF902", message, None, f"responses: {', '.join(names)}"))
+                raise refused(message, f"responses: {', '.join(names)}")
         measured = [response for response in measured if not given.tfs or response.name in given.tfs]
         return fit_resonances(measured, None, given)
-    bases = _bases(len(measured), given.base, given)
-    return fit_resonances(measured, bases, replace(given, slope=None))
+    return fit_resonances(measured, _bases(len(measured), given.base, given), replace(given, slope=None))
 
 
 def _bases(count: int, path: str | Path, given: FitOptions) -> list[Base]:
@@ -55,7 +54,7 @@ def _bases(count: int, path: str | Path, given: FitOptions) -> list[Base]:
         pairs = pairs * count
     if len(pairs) != count:
         message = f"{count} responses and {len(pairs)} transfer functions of the base"
-        raise UsageError(Diagnostic("SF902", message, None, "name one with --tf for each response"))
+        raise refused(message, "name one with --tf for each response")
     bounds = dict(zip(pairs, derive_bound(model, pairs), strict=True))
 
     def base_of(bound: BoundTransferFunction) -> Base:
@@ -76,6 +75,5 @@ def measure(model: Model, given: MeasureOptions) -> MeasuredResponse:
     for pole in locate(bound, None if bound.is_rational else band).poles:
         if pole.on_imaginary_axis and not pole.is_zero:
             message = f"{bound.name} has an undamped pole at {pole.frequency_hz():.4g} Hz"
-            hint = "only damped systems have a stationary response"
-            raise UsageError(Diagnostic("SF902", message, None, hint))
+            raise refused(message, "only damped systems have a stationary response")
     return synthesise(bound.name, lambda omega: respond(bound, omega).values, plan, bound.source.unit)

@@ -32,7 +32,7 @@ import numpy.typing as npt
 from flint import acb
 
 from symflex.budget import spend
-from symflex.errors import Diagnostic, SymflexError, UncertifiedError, UsageError
+from symflex.errors import Diagnostic, SymflexError, UncertifiedError, UsageError, refused
 from symflex.model.loss_factors import check_causal
 from symflex.roots import Band, Certificate, Everything, PoleZeroMap, Root
 from symflex.roots.counting.winding import Winding, continuous_step
@@ -42,8 +42,7 @@ from symflex.roots.functions.nested_function import NestedFunction
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
 from symflex.roots.root import exact_fraction
-from symflex.transfer import AnyBoundFunction
-from symflex.transfer.nested_form import BoundNested
+from symflex.transfer import AnyBoundFunction, BoundNested
 
 
 def count_turns(
@@ -313,7 +312,7 @@ def respond(
     """
     grid = real_numbers(omega, "omega")
     if grid.ndim != 1 or not np.isfinite(grid).all():
-        raise UsageError(Diagnostic("SF902", "omega must be a one-dimensional array of finite numbers"))
+        raise refused("omega must be a one-dimensional array of finite numbers")
     settled = without_lengths_of_zero(bound) if bound.is_reduced else bound
     if settled is not bound:
         bound, roots = settled, None

@@ -36,12 +36,11 @@ from symflex.analysis.time_response.partial_fractions import EnclosedQuotient, p
 from symflex.analysis.time_response.sample_times import SampleTimes
 from symflex.balls import UndecidedError, ball, bits_for_digits, current_bits, precision, settled
 from symflex.budget import spend
-from symflex.errors import REPORT, Diagnostic, InternalError, ModelError, UncertifiedError, UsageError
+from symflex.errors import REPORT, Diagnostic, InternalError, ModelError, UncertifiedError, refused
 from symflex.errors.optional import installed
 from symflex.model.loss_factors import check_causal
-from symflex.roots import Root
+from symflex.roots import Root, find_polynomial_roots
 from symflex.roots.functions.simplified import without_lengths_of_zero
-from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.problem import RootProblem, problem_of
 from symflex.roots.root import exact_fraction
 from symflex.state_space import not_rational
@@ -286,7 +285,7 @@ def _tustin(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling
     k = acb(sampling.rate)
     if any(_is_nothing(k - p.enclosure(), k) for p in given.poles):
         message = f"{bound.name} has a pole at {float(k.real.mid()):g} rad/s, which tustin takes to infinity"
-        raise UsageError(Diagnostic("SF902", message, None, "choose another sampling time"))
+        raise refused(message, "choose another sampling time")
     finite = [root for root in given.zeros if not _is_nothing(k - root.enclosure(), k)]
     poles, zeros = (_mapped(roots, lambda s: (k + s) / (k - s)) for roots in (given.poles, finite))
     gain = _leading(given)
@@ -318,7 +317,7 @@ def _matched(bound: BoundTransferFunction, given: _Continuous, sampling: Samplin
             if not root.is_zero and _is_nothing(1 - (s * h).exp(), acb(1)):
                 message = f"{bound.name} has {'a zero' if sign > 0 else 'a pole'} at {complex(s):.6g} rad/s, "
                 message += "which matched takes to z = 1, as if it were at s = 0"
-                raise UsageError(Diagnostic("SF902", message, None, "choose another sampling time"))
+                raise refused(message, "choose another sampling time")
             ratio = 1 / acb(h) if root.is_zero else -s / (1 - (s * h).exp())
             gain = gain * ratio ** (sign * root.multiplicity)
     return _product(gain, (*zeros, *(acb(-1) for _ in range(more))), poles, late)
@@ -358,8 +357,7 @@ def _delay(late: arb, sampling: Sampling) -> Fraction:
 
 def _only_whole(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling) -> int:
     if len(given.terms) > 1:
-        message = f"{bound.name} is a sum of delays, which '{sampling.method}' cannot handle"
-        raise UsageError(Diagnostic("SF902", message, None, "take zoh"))
+        raise refused(f"{bound.name} is a sum of delays, which '{sampling.method}' cannot handle", "take zoh")
     return int(_delay(given.terms[0].late, sampling) / sampling.sample)
 
 

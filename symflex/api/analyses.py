@@ -287,8 +287,7 @@ class Analyses(Plotted):
         >>> [root.decimal(6).im for root in found.poles], found.certificate.is_exceeded
         (['3.00000', '-3.00000'], False)
         """
-        given = RootsOptions(None, modes, mode, band, region, digits)
-        return face_of(PoleZeroMap, self._map(given, budget))
+        return face_of(PoleZeroMap, self._map(RootsOptions(None, modes, mode, band, region, digits), budget))
 
     def root_clouds(
         self, spread: str | float, modes: int | None = None, *, budget: float | None = None

@@ -116,8 +116,7 @@ class Model:
         # The keywords are the keys of a specification, in their order; those of the whole stand above tables.
         given = {key: value for key, value in locals().items() if value and key != "self"}
         above: dict[str, object] = {key: given.pop(key) for key in ("title", "source") if key in given}
-        text = write({"symflex": 1, **above, **given})
-        self._resolve(Source("<python>", text), {}, ())
+        self._resolve(Source("<python>", write({"symflex": 1, **above, **given})), {}, ())
 
     if not TYPE_CHECKING:
 
@@ -336,8 +335,7 @@ class Model:
             for output in (self.outputs if outputs is None else outputs)
             for source in (self.inputs if inputs is None else inputs)
         ]
-        pairs = pipeline.pick_pairs(self.resolved, wanted)
-        return StateSpace.of(self.resolved, pairs, minimal=minimal)
+        return StateSpace.of(self.resolved, pipeline.pick_pairs(self.resolved, wanted), minimal=minimal)
 
     @overload
     def stability(

@@ -16,8 +16,7 @@ from symflex.api.face import face_of
 from symflex.api.response import TimeResponse
 from symflex.api.state_space import StateSpace
 from symflex.api.toolboxes import Toolboxes, refuse_attribute
-from symflex.errors import counted, refused
-from symflex.errors.diagnostic import nearest
+from symflex.errors import counted, nearest, refused
 from symflex.expressions import Expression, Name
 from symflex.letters.groups import dimensionless_of
 from symflex.letters.limits import InLetters, limits_of
@@ -482,8 +481,7 @@ class BoundTransferFunction(Toolboxes, Analyses):
         """
         from symflex.analysis.time_response import SampleTimes, exact_values, forced_response
 
-        instants = SampleTimes.of(times)
-        exactly = instants.exactly()
+        exactly = SampleTimes.of(times).exactly()
         given = exact_values(u, len(exactly))
         response = forced_response(self.bound, exactly, given, exactly, checked_digits(digits), shaper)
         return face_of(TimeResponse, response)

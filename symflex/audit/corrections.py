@@ -17,8 +17,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import chain, combinations, islice, product
 
-from symflex.algebra import LAPLACE, Factored
-from symflex.algebra.ring import by_powers
+from symflex.algebra import LAPLACE, Factored, by_powers
 from symflex.audit.field import GrowError, UnreadError
 from symflex.audit.notation import in_symbols, monomial_expression, solve_linear, symbols_of
 from symflex.audit.numeric import Numbers, numbers_of
@@ -157,8 +156,7 @@ def _needed(reading: FormulaReading, part: Expression) -> Factored | None:
     if not len(expanded) or int(expanded.degrees()[index]) != 1:
         return None
     powers = by_powers(field.ring, expanded, index)
-    zero = field.ring.constant(0)
-    constant = Factored.polynomial(field.ring, powers.get(0, zero))
+    constant = Factored.polynomial(field.ring, powers.get(0, field.ring.constant(0)))
     return None if constant.is_zero else -constant / Factored.polynomial(field.ring, powers[1])
 
 

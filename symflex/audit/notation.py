@@ -68,8 +68,7 @@ def in_symbols(field: Arithmetic, value: Factored, symbols: Sequence[Symbol]) ->
     monomials: list[tuple[tuple[int, ...], Factored]] = []
     for degree in range(MOST_DEGREE + 1):
         for chosen in combinations_with_replacement(range(len(symbols)), degree):
-            product = prod((symbols[i].value for i in chosen), start=field.number(1))
-            monomials.append((chosen, product))
+            monomials.append((chosen, prod((symbols[i].value for i in chosen), start=field.number(1))))
         if len(monomials) > MOST_MONOMIALS:
             return None
         coefficients = solve_linear(field, value, [m for _, m in monomials])

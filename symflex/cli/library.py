@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING
 import click
 
 from symflex.cli.reporting import emit_json, reporting, say, terminal_width, write
-from symflex.errors import Diagnostic, SpecError, Text, UsageError, refused
-from symflex.errors.diagnostic import nearest
+from symflex.errors import Diagnostic, SpecError, Text, UsageError, no_such, refused
 
 if TYPE_CHECKING:
     from symflex.library.blocks import Block
@@ -66,8 +65,7 @@ def new(template: str | None, *, output: str | None, is_list: bool, netlist: str
             say(f"{name.ljust(width)}  {summary}")
         return 0
     if template not in TEMPLATES:
-        hint = nearest(template, TEMPLATES) or "templates: " + ", ".join(TEMPLATES)
-        raise refused(f"there is no template '{template[:64]}'", hint)
+        raise no_such("template", template, TEMPLATES)
     text = (files("symflex") / "templates" / f"{template}.toml").read_text(encoding="utf-8")
     _write_new(text if output is None else text.replace(f"{template}.toml", Path(output).name), output)
     return 0

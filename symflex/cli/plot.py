@@ -11,8 +11,7 @@ from symflex.cli.analyses import Ranged
 from symflex.cli.command import Specification, command_of
 from symflex.cli.reporting import PICTURES, check_place, note, write
 from symflex.cli.respond import show_response
-from symflex.errors import refused
-from symflex.errors.diagnostic import nearest
+from symflex.errors import no_such, refused
 from symflex.options import DrawOptions, PlotOptions, RespondOptions, duration, gain_ends
 
 if TYPE_CHECKING:
@@ -202,6 +201,5 @@ def _named(model: Model, kind: str) -> tuple[Figure | None, str]:
     figure = next((f for f in model.figures if f.name == kind), None)
     if figure is None and kind not in (*FIGURES, *LOOP_FIGURES):
         names = [*FIGURES, "locus", "sensitivity", STABILITY, *(f.name for f in model.figures)]
-        hint = nearest(kind, names) or "choose from: " + ", ".join(names)
-        raise refused(f"there is no figure '{kind[:64]}'", hint)
+        raise no_such("figure", kind, names, "choose from")
     return figure, figure.kind if figure else kind

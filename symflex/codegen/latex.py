@@ -15,8 +15,7 @@ from symflex.print.forms import PrintedForm, print_forms
 from symflex.print.latex import TEXT_WIDTH_MM, Picture, latex_document, latex_files
 from symflex.roots import PoleZeroMap
 from symflex.roots.locate import locate
-from symflex.transfer import AnyBoundFunction, AnyTransferFunction
-from symflex.transfer.nested_form import bind_any
+from symflex.transfer import AnyBoundFunction, AnyTransferFunction, bind_any
 
 ROOT_DIGITS = 15  # digits to which roots are found for a table; it prints fewer
 
@@ -113,8 +112,7 @@ class LatexExporter:
             return
         says_whose = kind == "modes" or bool(asked.gain) or title not in DEFAULT_FIGURES.values()
         shown = () if says_whose else tuple(bound.source for bound in of)
-        latex = render(figure, "pgf", font="latex").decode("ascii")
-        pictures.append(Picture(name, latex, title, shown))
+        pictures.append(Picture(name, render(figure, "pgf", font="latex").decode("ascii"), title, shown))
 
     def _parts(
         self, tfs: Sequence[AnyTransferFunction]

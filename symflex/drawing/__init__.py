@@ -21,7 +21,7 @@ from symflex.drawing.page import MARGIN, POINTS, figure_of, render_drawing, stac
 from symflex.drawing.rows import lay_out
 from symflex.drawing.scheme import DrawnNetwork, scheme_of, with_readings
 from symflex.drawing.signals import SignalGraph, whole
-from symflex.errors import Diagnostic, UsageError
+from symflex.errors import Diagnostic, UsageError, refused
 from symflex.expressions import Name, names
 from symflex.figures.files import MM_PER_INCH
 from symflex.figures.style import DEFAULT_FONT, paper_style
@@ -90,7 +90,7 @@ def drawing_of(
             f"it needs {min(needed * SMALLEST_ASKED, WIDEST_MM):.0f} mm; leave out the width to let "
             "symflex choose it"
         )
-        raise UsageError(Diagnostic("SF902", message, None, hint))
+        raise refused(message, hint)
 
 
 def _networks(content: _Content, spacing: Spacing) -> Iterator[_Row]:

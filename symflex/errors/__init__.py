@@ -12,5 +12,6 @@ from symflex.errors.exceptions import (
     SymflexError,
     UncertifiedError,
     UsageError,
+    no_such,
     refused,
 )

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import ClassVar, Final
 
-from symflex.errors.diagnostic import Diagnostic
+from symflex.errors.diagnostic import Diagnostic, nearest
 
 
 class SymflexError(Exception):
@@ -41,6 +42,12 @@ class UsageError(SymflexError):
 def refused(message: str, hint: str | None = None) -> UsageError:
     """Return SF902, the refusal of an argument or option."""
     return UsageError(Diagnostic("SF902", message, None, hint))
+
+
+def no_such(what: str, name: str, known: Iterable[str], listed: str = "") -> UsageError:
+    """Return SF902 for a name that is not known, with the nearest that is, or all of them."""
+    hint = nearest(name, known) or f"{listed or f'{what}s'}: {', '.join(known)}"
+    return refused(f"there is no {what} '{name[:64]}'", hint)
 
 
 class SpecError(SymflexError):

@@ -21,7 +21,7 @@ from matplotlib.ticker import (
     ScalarFormatter,
 )
 
-from symflex.errors import Diagnostic, UsageError
+from symflex.errors import refused
 from symflex.figures.figure import new_figure
 from symflex.figures.style import (
     COLUMN_INCHES,
@@ -196,10 +196,9 @@ class AxisLimits:
             # Written so that what is not a number is refused too.
             if not -LARGEST <= ends[0] < ends[1] <= LARGEST:
                 message = f"an axis runs from a lower to a higher number, not from {ends[0]:g} to {ends[1]:g}"
-                raise UsageError(Diagnostic("SF902", message))
+                raise refused(message)
             if ends[1] - ends[0] < NARROWEST * max(map(abs, ends)):
-                message = f"an axis from {ends[0]!r} to {ends[1]!r} is too short to be drawn"
-                raise UsageError(Diagnostic("SF902", message))
+                raise refused(f"an axis from {ends[0]!r} to {ends[1]!r} is too short to be drawn")
 
 
 AxesGiven = Axes | Sequence[Axes] | npt.NDArray[np.object_]
@@ -215,7 +214,7 @@ def root_figure(axes: Axes) -> Figure:
     """Return the figure that axes stand in."""
     figure = axes.get_figure(root=True)
     if figure is None:
-        raise UsageError(Diagnostic("SF902", "these axes belong to no figure"))
+        raise refused("these axes belong to no figure")
     return figure
 
 
@@ -240,7 +239,7 @@ class Canvas:
         if len(self.axes) not in counts:
             needed = " or ".join(map(str, counts))
             message = f"this figure has {needed} panel{'s' if needed != '1' else ''}, not {len(self.axes)}"
-            raise UsageError(Diagnostic("SF902", message, None, "pass that many axes as ax"))
+            raise refused(message, "pass that many axes as ax")
         return self.axes
 
     def one_panel(self, height: float) -> Axes:

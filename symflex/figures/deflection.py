@@ -8,7 +8,7 @@ from math import degrees
 from typing import TYPE_CHECKING
 
 from symflex.analysis.modes import Deflection, deflection
-from symflex.errors import Diagnostic, ModelError, UsageError
+from symflex.errors import Diagnostic, ModelError, refused
 from symflex.figures.axes import Canvas
 from symflex.figures.modes import draw_shapes, label_of_value, unit_of_reference
 from symflex.figures.runs import panels_of
@@ -29,7 +29,7 @@ def draw_deflections(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figu
     """
     if not canvas.frame.at or canvas.band_hz:
         hint = 'as in --at 30Hz, or at = "30 Hz" in [figures]'
-        raise UsageError(Diagnostic("SF902", "a deflection needs frequencies, and takes no band", None, hint))
+        raise refused("a deflection needs frequencies, and takes no band", hint)
     model = bounds[0].source.model
     of_inputs = {bound.source.input.name: bound for bound in bounds}.values()
     pairs = [(bound.source.input, deflection(bound, at)) for bound in of_inputs for at in canvas.frame.at]

@@ -28,8 +28,7 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.text import Text
 
-from symflex.errors import Diagnostic, UsageError
-from symflex.errors.diagnostic import nearest
+from symflex.errors import Diagnostic, UsageError, nearest, refused
 from symflex.figures.style import DEFAULT_FONT, PRIMES, paper_style
 from symflex.files.write import write_atomically
 from symflex.print.label import read_label
@@ -89,7 +88,7 @@ def _animation(figure: Figure) -> bytes:
     moving = getattr(figure, "moving", ())  # of a ShownFigure, which imports this file to save itself
     if not moving:
         hint = "formats of other figures: pdf, pgf, png, svg"
-        raise UsageError(Diagnostic("SF902", "only shapes move: no GIF of another figure", None, hint))
+        raise refused("only shapes move: no GIF of another figure", hint)
     canvas, dpi, pictures, buffer = FigureCanvasAgg(figure), figure.dpi, [], BytesIO()
     try:
         figure.dpi = FRAME_DOTS

@@ -11,8 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from symflex.analysis.modes import EnclosedModeShape
-from symflex.errors import Diagnostic, ModelError, UsageError
-from symflex.errors.diagnostic import nearest
+from symflex.errors import Diagnostic, ModelError, UsageError, nearest, refused
 from symflex.figures.axes import FREE, AxesGiven, AxisLimits, Canvas, Drawing, axes_of
 from symflex.figures.bode import draw_bode
 from symflex.figures.deflection import draw_deflections
@@ -27,10 +26,9 @@ from symflex.figures.runs import panels_of
 from symflex.figures.sensitivity import draw_sensitivity
 from symflex.figures.stability import draw_stability
 from symflex.figures.style import DEFAULT_FONT, family_of, paper_style
-from symflex.loops import AnyLoop
+from symflex.loops import AnyLoop, StabilityMap
 from symflex.loops.chart import StabilityChart
 from symflex.loops.clouds import root_clouds
-from symflex.loops.stability_map import StabilityMap
 from symflex.model import Model
 from symflex.options import PlotOptions, Stated, axis_ends, band_ends, frequency
 from symflex.print.latex import width_of
@@ -88,8 +86,7 @@ def draw(
     if kind not in known:
         if kind in LOOP_FIGURES:
             message = f"a figure of kind '{kind}' needs a loop"
-            hint = "name its gain: --gain K, or gain in [figures]"
-            raise UsageError(Diagnostic("SF902", message, None, hint))
+            raise refused(message, "name its gain: --gain K, or gain in [figures]")
         hint = nearest(kind, known) or "kinds: " + ", ".join(known)
         raise UsageError(Diagnostic("SF208", f"there is no figure of kind '{kind[:64]}'", None, hint))
     _check_frame(kind, frame)
@@ -131,14 +128,14 @@ def part_shown(kind: str, given: PlotOptions) -> tuple[tuple[Fraction, Fraction]
     band, xlim = given.band, given.xlim
     if xlim is not None and kind == "bode":
         if band is not None:
-            raise UsageError(Diagnostic("SF902", "give only one of --band and --xlim"))
+            raise refused("give only one of --band and --xlim")
         band, xlim = xlim, None
     if given.asymptotes and kind != "bode":
-        raise UsageError(Diagnostic("SF902", f"--asymptotes is for bode, not for '{kind}'"))
+        raise refused(f"--asymptotes is for bode, not for '{kind}'")
     if given.at and kind != "deflection":
-        raise UsageError(Diagnostic("SF902", f"--at is for deflection, not for '{kind}'"))
+        raise refused(f"--at is for deflection, not for '{kind}'")
     if given.spread is not None and kind != "poles_zeros":
-        raise UsageError(Diagnostic("SF902", f"--spread is for poles_zeros, not for '{kind}'"))
+        raise refused(f"--spread is for poles_zeros, not for '{kind}'")
     is_plane = kind in ("locus", "poles_zeros")
     frame = AxisLimits(
         axis_ends(xlim, "--xlim", is_frequency=is_plane),
@@ -183,11 +180,11 @@ def _styled(font: str, canvas: Canvas, drawing: Callable[[], Figure]) -> Figure:
 def _check_frame(kind: str, frame: AxisLimits) -> None:
     """Refuse limits of axes that a kind of figure has not."""
     if frame.phase and kind != "bode":
-        raise UsageError(Diagnostic("SF902", "limits of a phase are for 'bode'"))
+        raise refused("limits of a phase are for 'bode'")
     if frame.x and kind == "bode":
-        raise UsageError(Diagnostic("SF902", "the frequencies of a Bode plot are its band"))
+        raise refused("the frequencies of a Bode plot are its band")
     if frame != FREE and kind in ("deflection", "modes"):
-        raise UsageError(Diagnostic("SF902", "shapes have no limits: their largest displacement is 1"))
+        raise refused("shapes have no limits: their largest displacement is 1")
 
 
 def draw_over(

@@ -16,7 +16,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, MaxNLocator, NullFormatter
 
 from symflex.analysis.modes import DistributedShape, EnclosedModeShape, EnclosedShape, lowest_modes
-from symflex.errors import Diagnostic, ModelError, UsageError
+from symflex.errors import Diagnostic, ModelError, refused
 from symflex.figures.axes import Canvas, root_figure
 from symflex.figures.figure import ShownFigure, new_figure
 from symflex.figures.files import MM_PER_INCH
@@ -104,7 +104,7 @@ def draw_shapes(
     own = canvas.own_axes(len(panels) * len(shapes)) if canvas.axes else ()
     if min(columns) < NARROWEST_PANEL and not own:
         message = f"{len(panels)} panels side by side do not fit into {MM_PER_INCH * width:.4g} mm"
-        raise UsageError(Diagnostic("SF902", message, None, "the width of a page is 170 mm"))
+        raise refused(message, "the width of a page is 170 mm")
     is_lagging = any(_lags(panel, shape) for shape in shapes for panel in panels)
     has_axis = any(not isinstance(panel, Plan) for panel in panels)
     few = [(p, room) for p, room in zip(panels, columns, strict=True) if isinstance(p, Stems)]
@@ -250,8 +250,7 @@ def _moving_line(axes: Axes, rest: Points, moved: Amplitudes, **style: Any) -> M
 def _draw_plan(axes: Axes, panel: Plan, shape: EnclosedShape) -> list[Moving]:
     moving: list[Moving] = []
     members = list(_members(panel, shape))
-    rest = np.concatenate([place for place, _ in members], axis=1)
-    size = float(max(np.ptp(rest, axis=1)))
+    size = float(max(np.ptp(np.concatenate([place for place, _ in members], axis=1), axis=1)))
     largest = float(max(np.abs(moved).max() for _, moved in members)) or 1.0
     scale = SWING * size / largest
     is_lagging = _lags(panel, shape)

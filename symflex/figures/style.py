@@ -14,8 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.mathtext import MathTextParser
 
-from symflex.errors import Diagnostic, UsageError
-from symflex.errors.diagnostic import nearest
+from symflex.errors import Diagnostic, UsageError, nearest
 from symflex.model import Input, Output
 from symflex.model.labels import GREEK
 from symflex.print.label import read_label

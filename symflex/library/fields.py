@@ -284,8 +284,7 @@ class Characteristic:
 
 def text(value: Factored) -> str:
     """Return what is equal for equal values of few factors, which need not stand in the same order."""
-    parts = sorted(f"({f})^{e}" for f, e in value.factors)
-    return f"{value.unit}*" + "*".join(parts)
+    return f"{value.unit}*" + "*".join(sorted(f"({f})^{e}" for f, e in value.factors))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

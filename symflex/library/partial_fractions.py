@@ -19,8 +19,7 @@ from dataclasses import dataclass
 
 from flint import fmpz_mpoly
 
-from symflex.algebra import Factored, Ring
-from symflex.algebra.ring import by_powers, degree_in, irreducible_factors
+from symflex.algebra import Factored, Ring, by_powers, degree_in, irreducible_factors
 
 Matrix = tuple[tuple[Factored, ...], ...]
 Row = list[Factored]

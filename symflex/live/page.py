@@ -96,8 +96,7 @@ def _part(number: int, model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[
     every = JAVASCRIPT.contents(model, derived)
     contents = replace(every, members=tuple(m for m in every.members if not m.is_response))
     module = "\n".join(map(_packed, javascript_module(contents).text.splitlines()))
-    names = contents.names(RESERVED)[1]
-    data = _data(contents, names, _located(model, pairs))
+    data = _data(contents, contents.names(RESERVED)[1], _located(model, pairs))
     script = json.dumps(data, allow_nan=False).replace("<", "\\u003c")
     returned = f"return {{ PARAMETERS, TRANSFER_FUNCTIONS, data: {script} }};"
     return _markup(number, contents, data), f"(() => {{\n{module}\n{returned}\n}})()"
@@ -226,8 +225,7 @@ def _pieces(model: Model, shown: Sequence[str]) -> list[str | list[Any]]:
 
 def _markup(number: int, contents: Contents, data: dict[str, Any]) -> str:
     model = contents.model
-    package = resources.files("symflex.live")
-    frame = package.joinpath("page.html").read_text(encoding="utf-8")
+    frame = resources.files("symflex.live").joinpath("page.html").read_text(encoding="utf-8")
     labels = model_labels(model)
     rows = [_slider(number, i, p, labels, model) for i, p in enumerate(data["parameters"])]
     names = [escape_html(m.tf.name) for m in contents.members]

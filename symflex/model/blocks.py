@@ -64,8 +64,7 @@ class Loads:
         source: Source, allow_outside: Iterable[str | Path], settings: Mapping[str, Setting] | None = None
     ) -> Loads:
         """Return what a specification may read besides itself: what stands in its folder, or is allowed."""
-        own = Path(source.name).parent.resolve()
-        folders = (own, *(Path(folder).resolve() for folder in allow_outside))
+        folders = (Path(source.name).parent.resolve(), *(Path(folder).resolve() for folder in allow_outside))
         return Loads(folders=folders, settings=settings or {})
 
 

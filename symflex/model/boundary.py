@@ -125,8 +125,7 @@ def stretches(fields: Sequence[FieldProblem], elements: Sequence[PlacedElement])
         if isinstance(element, LineElement) and element.length in dict(use.values):
             names = tuple(f"{use.name}.{name}" for quantity in element.along for name in quantity)
             length = dict(use.values)[element.length]
-            what = f"{element.type_name} '{use.name}'"
-            every.append(Stretch(what, names, Number(Fraction(0)), length))
+            every.append(Stretch(f"{element.type_name} '{use.name}'", names, Number(Fraction(0)), length))
     return tuple(every)
 
 

@@ -41,7 +41,7 @@ from symflex.expressions import (
     sum_of,
 )
 from symflex.library.blocks import DECAY, ROOT
-from symflex.model.model import PlacedBlock
+from symflex.model.model import PlacedBlock, rewritten
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection
@@ -97,7 +97,7 @@ def with_branches(draft: Draft, taken: Collection[str]) -> Draft:
         return replace_values(opened, {n: x for n in nodes(opened) if (x := _function(n, root.name, decay))})
 
     kept = (d for d in draft.definitions if put_in(d.expression) is d.expression)
-    changed = replace(draft, definitions=tuple(kept)).rewritten(put_in)
+    changed = rewritten(replace(draft, definitions=tuple(kept)), put_in)
     return replace(changed, blocks=(root, *decays.values(), *changed.blocks))
 
 

@@ -104,8 +104,7 @@ def check_unknowns(reader: Reader, signals: Sequence[Signal], others: Iterable[E
     for unknown in unknowns:
         if unknown.name not in used:
             hint = nearest(unknown.name, used) or "leave it out, together with one equation"
-            message = f"no equation contains the unknown '{unknown.name}'"
-            reader.note("SF242", message, unknown.span, hint)
+            reader.note("SF242", f"no equation contains the unknown '{unknown.name}'", unknown.span, hint)
 
 
 def read_state_equations(

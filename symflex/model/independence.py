@@ -149,8 +149,7 @@ def repetitions(forms: Sequence[Form]) -> list[Repetition]:
             continue
         left = [k for k in rest if k is not None and not isinstance(k, tuple)]
         if all(v.kind == "input" for v in left):
-            others = tuple(sorted(i for i in origin if i != number))
-            repeated.append(Repetition(number, others, bool(rest)))
+            repeated.append(Repetition(number, tuple(sorted(i for i in origin if i != number)), bool(rest)))
     return repeated
 
 

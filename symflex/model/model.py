@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import Final, Literal
+from typing import Any, Final, Literal, TypeVar
 
 from symflex.errors import Diagnostic, Span, Text
 from symflex.expressions import Attribute, Equation, Expression, Number, names, parse
@@ -448,6 +448,22 @@ class Model:
     def transfer_functions(self) -> tuple[tuple[str, str], ...]:
         """Every (output, input) pair, outputs first."""
         return tuple((o.name, i.name) for o in self.outputs for i in self.inputs)
+
+
+AnyDraft = TypeVar("AnyDraft", bound=Any)  # a model, or one that is not resolved yet
+
+
+def rewritten(draft: AnyDraft, new: Callable[[Expression], Expression]) -> AnyDraft:
+    """Return a model or draft with another expression in place of each but those of definitions."""
+    changed: AnyDraft = replace(
+        draft,
+        elements=tuple(replace(x, values=tuple((n, new(e)) for n, e in x.values)) for x in draft.elements),
+        blocks=tuple(replace(x, values=tuple((n, new(e)) for n, e in x.values)) for x in draft.blocks),
+        signals=tuple(replace(x, expression=new(x.expression)) for x in draft.signals),
+        outputs=tuple(replace(x, expression=new(x.expression)) for x in draft.outputs),
+        fields=tuple(field.rewritten(new) for field in draft.fields),
+    )
+    return changed
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from heapq import heapify, heappop, heappush
-from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, Span, Text, counted, nearest
+from symflex.expressions import Expression
+from symflex.library import ParameterPort
 from symflex.library.blocks import BLOCKS
 from symflex.library.elements import CIRCUITS, COMPONENT_DOMAIN, COMPONENTS, ELEMENTS, Element, Port, Variable
+from symflex.library.elements.element import Domain, PortDomain
 from symflex.library.words import hint_of_type
 from symflex.model.declarations import DeclaredParameter, read_label
 from symflex.model.model import (
@@ -30,12 +32,6 @@ from symflex.model.reading import NAME, Reader, has_ports, signed_number
 from symflex.model.scope import RESERVED
 from symflex.model.spec import ArrayValue, BooleanValue, KeyValue, StringValue, TableValue
 from symflex.quantities import Dimension, name_hint, parse_unit, unit_of
-
-if TYPE_CHECKING:
-    from symflex.expressions import Expression
-    from symflex.library import ParameterPort
-    from symflex.library.elements import Domain
-    from symflex.library.elements.element import PortDomain
 
 RESTS = {"electrical": "a terminal at earth", "acoustic": "an open end", "thermal": "what stays as it is"}
 """What is at ground, where that is no end that does not move."""
@@ -103,8 +99,7 @@ def read_elements(reader: Reader, section: TableValue | None) -> tuple[DraftElem
 
 def _read_element(reader: Reader, entry: KeyValue) -> DraftElement | None:
     what = f"element '{entry.key}'"
-    hint = 'for instance { type = "spring", between = ["a", "b"], k = "k" }'
-    table = reader.table(entry, what, hint)
+    table = reader.table(entry, what, 'for instance { type = "spring", between = ["a", "b"], k = "k" }')
     element = _element_type(reader, table, entry) if table else None
     if table is None or element is None:
         return None
@@ -145,8 +140,7 @@ def _choices(
                 chosen.append((choice.name, text.value))
                 continue
             hint = nearest(text.value, choice.values) or "known: " + ", ".join(choice.values)
-            message = f"unknown {choice.name} '{text.value[:60]}' of {who}"
-            reader.note("SF208", message, text.span, hint)
+            reader.note("SF208", f"unknown {choice.name} '{text.value[:60]}' of {who}", text.span, hint)
     return tuple(chosen) if len(chosen) == len(element.choices) else None
 
 
@@ -641,18 +635,6 @@ class Draft:
         places += [e for group in (self.elements, self.blocks) for x in group for _, e in x.values]
         equations = (c for f in self.fields for c in (*f.equations, *f.conditions))
         return places + [side for c in equations for side in (c.left, c.right)]
-
-    def rewritten(self, new: Callable[[Expression], Expression]) -> Draft:
-        """Return the draft with another expression in place of each but those of definitions."""
-        elements = (replace(x, values=tuple((n, new(e)) for n, e in x.values)) for x in self.elements)
-        return replace(
-            self,
-            elements=tuple(elements),
-            blocks=tuple(replace(x, values=tuple((n, new(e)) for n, e in x.values)) for x in self.blocks),
-            signals=tuple(replace(x, expression=new(x.expression)) for x in self.signals),
-            outputs=tuple(replace(x, expression=new(x.expression)) for x in self.outputs),
-            fields=tuple(field.rewritten(new) for field in self.fields),
-        )
 
 
 def broken_names(sections: Mapping[str, TableValue | None], draft: Draft) -> frozenset[str]:

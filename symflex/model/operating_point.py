@@ -103,8 +103,7 @@ def read_operating_point(
             named = reader.strings(entry, "solve of [operating_point]") or ()
             solve = tuple(dict.fromkeys(t.value for t in named))
             continue
-        what = f"'{entry.key}' of [operating_point]"
-        value = reader.expression(entry.value, what)
+        value = reader.expression(entry.value, f"'{entry.key}' of [operating_point]")
         if value is None:
             continue
         literal = literal_value(value)

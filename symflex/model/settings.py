@@ -14,9 +14,9 @@ from numbers import Rational
 from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, Source, Span, Text, UsageError, nearest, refused
-from symflex.expressions import Expression, substitute
+from symflex.expressions import substitute
 from symflex.model.declarations import DeclaredParameter, one_of, without_sign
-from symflex.model.model import ExactValue, Model, ModelParameter
+from symflex.model.model import ExactValue, Model, ModelParameter, rewritten
 from symflex.model.units import exact_expression
 from symflex.quantities import DIMENSIONLESS, Quantity, parse_quantity
 
@@ -144,9 +144,6 @@ def exact_number(name: str, given: object) -> Fraction:
     raise refused(f"the value of '{name}' must be a finite number", hint)
 
 
-Values = tuple[tuple[str, "Expression"], ...]
-
-
 def with_numbers(
     model: Model,
     symbolic: Collection[str] = (),
@@ -168,26 +165,15 @@ def with_numbers(
         if value is not None and name not in symbolic and not value.is_imaginary
     }
 
-    def put_in(expression: Expression) -> Expression:
-        return substitute(expression, numbers)
-
-    def each(given: Values) -> Values:
-        return tuple((name, put_in(e)) for name, e in given)
-
+    model = rewritten(model, lambda expression: substitute(expression, numbers))
     return replace(
         model,
         parameters=tuple(p for p in model.parameters if p.name not in numbers),
-        definitions=tuple(replace(d, expression=put_in(d.expression)) for d in model.definitions),
-        elements=tuple(replace(e, values=each(e.values)) for e in model.elements),
-        signals=tuple(replace(x, expression=put_in(x.expression)) for x in model.signals),
+        definitions=tuple(
+            replace(d, expression=substitute(d.expression, numbers)) for d in model.definitions
+        ),
         blocks=tuple(
-            replace(
-                b,
-                values=each(b.values),
-                submodel=None if b.submodel is None else with_numbers(b.submodel, symbolic, values),
-            )
+            replace(b, submodel=b.submodel and with_numbers(b.submodel, symbolic, values))
             for b in model.blocks
         ),
-        fields=tuple(f.rewritten(put_in) for f in model.fields),
-        outputs=tuple(replace(o, expression=put_in(o.expression)) for o in model.outputs),
     )

@@ -231,8 +231,7 @@ def measured_variables(draft: Draft) -> list[Variable]:
 
 def measured_input(source: Input, system: DimensionSystem) -> Input:
     """Return the input with the dimension and unit found for it."""
-    variable = Variable("input", source.name)
-    dimension = system.dimension(system.variable(variable))
+    dimension = system.dimension(system.variable(Variable("input", source.name)))
     unit = source.unit or ("" if dimension is None else str(dimension))
     return replace(source, dimension=dimension, unit=unit)
 

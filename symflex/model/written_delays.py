@@ -29,7 +29,7 @@ from symflex.expressions import (
 )
 from symflex.library.blocks import BLOCKS
 from symflex.model.branches import per
-from symflex.model.model import PlacedBlock
+from symflex.model.model import PlacedBlock, rewritten
 from symflex.model.scope import COORDINATE
 
 if TYPE_CHECKING:
@@ -80,7 +80,8 @@ def with_written_delays(draft: Draft, taken: Collection[str]) -> Draft:
         draft,
         definitions=tuple(d for d in draft.definitions if d.name not in late),
         blocks=tuple(b for b in draft.blocks if b.name not in late),
-    ).rewritten(put_in)
+    )
+    kept = rewritten(kept, put_in)
     return replace(kept, blocks=(*kept.blocks, *blocks.values()))
 
 

@@ -19,12 +19,12 @@ from symflex.budget import TIME_OVER, Budget, entered_budget
 from symflex.data.measurement import MeasuredResponse
 from symflex.errors import (
     BudgetError,
-    Diagnostic,
     SpecError,
     SymflexError,
     UncertifiedError,
     UsageError,
     counted,
+    refused,
 )
 from symflex.errors.diagnostic import printable
 from symflex.files.write import free_name
@@ -86,22 +86,19 @@ def find_specifications(
             for file in inside:
                 if _leads_out(file, (path, *allow_outside)):
                     message = f"'{file}' is a link that leads out of the folder"
-                    hint = "--allow-outside FOLDER lets a report read another folder"
-                    raise UsageError(Diagnostic("SF902", message, None, hint))
+                    raise refused(message, "--allow-outside FOLDER lets a report read another folder")
             if not inside:
                 message = f"the folder '{path}' contains no specification"
-                hint = "a specification is a file whose name ends in .toml"
-                raise UsageError(Diagnostic("SF902", message, None, hint))
+                raise refused(message, "a specification is a file whose name ends in .toml")
             specifications += inside
         elif path.suffix.lower() in DATA_SUFFIXES:
             message = f"'{path}' is a file of measured data, not a specification"
-            hint = "put it into a folder with the specification, and give the folder"
-            raise UsageError(Diagnostic("SF902", message, None, hint))
+            raise refused(message, "put it into a folder with the specification, and give the folder")
         else:
             specifications.append(path)
     distinct = tuple(dict.fromkeys(specifications))
     if len(distinct) > MOST_MODELS:
-        raise UsageError(Diagnostic("SF902", f"{len(distinct)} specifications; a report takes {MOST_MODELS}"))
+        raise refused(f"{len(distinct)} specifications; a report takes {MOST_MODELS}")
     return distinct
 
 
@@ -363,8 +360,7 @@ def _provenance(date: str) -> Section:
         "arithmetic, and none is missing from the region named. Results that were sampled rather "
         "than proved are marked as such."
     )
-    table = Table(columns("Program", ("Version", "plain")), rows)
-    return Section("Provenance", (lead, table), "provenance")
+    return Section("Provenance", (lead, Table(columns("Program", ("Version", "plain")), rows)), "provenance")
 
 
 def _version(name: str) -> str:

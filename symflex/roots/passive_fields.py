@@ -53,8 +53,7 @@ def fields_supply_nothing(model: Model, values: Mapping[str, ExactValue]) -> tup
     if model.elements or model.signals or model.blocks:
         return False, False
     with precision(BITS):
-        plain = replace(model, outputs=(), figures=(), published=())
-        fields = _Fields(assemble(plain, is_cut=True), values)
+        fields = _Fields(assemble(replace(model, outputs=(), figures=(), published=()), is_cut=True), values)
         is_passive = fields.are_passive()
         return is_passive, is_passive and replace(fields, are_lossy=True).are_passive()
 
@@ -455,8 +454,7 @@ def _begins_without_force(field: Continuum, pairs: Iterable[Pair]) -> bool:
 
 def free_terms(form: LinearForm, known: Mapping[Variable, Terms] | None = None) -> Terms:
     """Return the terms of a form where inputs rest, with ``known`` forms put in."""
-    terms = {v: c for v, c in LinearForm.total([form]).terms if v.kind != "input"}
-    return put_in(terms, known or {})
+    return put_in({v: c for v, c in LinearForm.total([form]).terms if v.kind != "input"}, known or {})
 
 
 def _at(value: Factored, place: Factored) -> Factored:

@@ -34,8 +34,7 @@ from math import atan2, pi, prod
 
 from flint import arb
 
-from symflex.algebra import LAPLACE, Factored
-from symflex.algebra.ring import terms_of
+from symflex.algebra import LAPLACE, Factored, terms_of
 from symflex.balls import ball, precision
 from symflex.equations import Equations
 from symflex.expressions import (
@@ -51,8 +50,7 @@ from symflex.expressions import (
     nodes,
     substitute,
 )
-from symflex.library.elements import Terms
-from symflex.library.elements.element import CIRCUITS, LinearForm, Variable
+from symflex.library.elements import CIRCUITS, LinearForm, Terms, Variable
 from symflex.library.elements.line import Beam, LineElement
 from symflex.library.elements.lumped import ThroughSource
 from symflex.model import ExactValue, Model, Output, PlacedElement, Signal

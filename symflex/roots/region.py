@@ -10,7 +10,7 @@ from fractions import Fraction
 from flint import arb
 
 from symflex.balls import ball, precision
-from symflex.errors import Diagnostic, UsageError
+from symflex.errors import refused
 from symflex.options import RootsOptions, band_ends, frequency
 from symflex.roots.root import Root
 
@@ -166,7 +166,7 @@ def region_of(given: RootsOptions, mark: str = "") -> Region | None:
     """
     if sum(choice is not None for choice in (given.modes, given.mode, given.band, given.region)) > 1:
         names = f"{mark}modes, {mark}mode, {mark}band and {mark}region"
-        raise UsageError(Diagnostic("SF902", f"give only one of {names}"))
+        raise refused(f"give only one of {names}")
     try:
         if given.modes is not None:
             return Modes(given.modes)
@@ -178,7 +178,7 @@ def region_of(given: RootsOptions, mark: str = "") -> Region | None:
             return None
         return Rectangle(*(frequency(side, "--region", "-10 or '3 rad/s'") for side in given.region))
     except ValueError as impossible:
-        raise UsageError(Diagnostic("SF902", str(impossible))) from None
+        raise refused(str(impossible)) from None
 
 
 def _numbered(roots: Sequence[Root], first: int, last: int, *, at_zero: Position) -> tuple[Position, ...]:

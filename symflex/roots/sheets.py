@@ -18,14 +18,13 @@ from fractions import Fraction
 from functools import reduce
 from math import log, pi, prod
 
-from flint import acb, arb, fmpz_mpoly
+from flint import arb, fmpz_mpoly
 
 from symflex.algebra import NO_KERNELS, Factored, terms_of
 from symflex.balls import precision
 from symflex.errors import SymflexError
 from symflex.roots.counting.winding import RootOnPathError
-from symflex.roots.distributed.far_out import right_tail
-from symflex.roots.distributed.right_half_plane import MARGIN, NOT_COUNTED
+from symflex.roots.distributed.right_half_plane import MARGIN, NOT_COUNTED, last_on_the_right
 from symflex.roots.distributed.side import Side
 from symflex.roots.functions.kernel_function import has_kernels
 from symflex.roots.loss_modes import UNJUDGED
@@ -210,13 +209,9 @@ def _growing(bound: BoundTransferFunction, side: Side) -> tuple[Sequence[Root], 
     if side.is_finite:
         known, is_open = on_sheet(side.all_roots, bound)
         return known, EITHER_SHEET if is_open and any(not r.re < 0 for r in known) else ""
-    radius = 0.0
-    for factor, exponent in side.function.part.factors:
-        if exponent > 0:
-            tail = right_tail(bound, (factor,), (acb(1),), side.function.frequency_of(1.0))
-            if isinstance(tail, str):
-                return [], tail
-            radius = max(radius, tail)
+    radius, unproved = last_on_the_right(side)
+    if unproved:
+        return [], unproved
     try:
         count = side.count_right(log(radius * MARGIN))
     except RootOnPathError:

@@ -33,6 +33,7 @@ from symflex.expressions import (
 )
 from symflex.library.blocks import BLOCKS
 from symflex.model import Input, Model, Output, Signal
+from symflex.model.model import rewritten
 
 PARTS_LIMIT = 100_000  # parts that an expression may have once its definitions are opened
 
@@ -50,17 +51,7 @@ def opened(model: Model) -> Model:
         meanings[definition.name] = _opened(definition.expression, meanings, sizes)
         sizes[definition.name] = len(nodes(meanings[definition.name]))
 
-    def put_in(given: tuple[tuple[str, Expression], ...]) -> tuple[tuple[str, Expression], ...]:
-        return tuple((name, _opened(e, meanings, sizes)) for name, e in given)
-
-    return replace(
-        model,
-        definitions=(),
-        elements=tuple(replace(e, values=put_in(e.values)) for e in model.elements),
-        signals=tuple(replace(x, expression=_opened(x.expression, meanings, sizes)) for x in model.signals),
-        blocks=tuple(replace(b, values=put_in(b.values)) for b in model.blocks),
-        outputs=tuple(replace(o, expression=_opened(o.expression, meanings, sizes)) for o in model.outputs),
-    )
+    return rewritten(replace(model, definitions=()), lambda e: _opened(e, meanings, sizes))
 
 
 def with_filters_apart(model: Model) -> Model:

@@ -140,8 +140,7 @@ def solve(rows: Sequence[Row], weights: Sequence[tuple[int, int]]) -> SolvedRows
     # What stands in a tail is lower in order than what it equals, so its own tails are known by then.
     for column in sorted(range(count), key=lambda j: order((j, basis[j][0]))):
         power, row = basis[column]
-        rest = {key: -value for key, value in row.items() if key != (column, power)}
-        tails[column] = solved.reduced(rest)
+        tails[column] = solved.reduced({key: -value for key, value in row.items() if key != (column, power)})
         _check(tails[column])
     return solved
 

@@ -198,8 +198,7 @@ class _Rows:
         )
         about = tuple((unknowns[columns[v]] if columns.get(v) in filters else v, r) for v, r in self.about)
         changed = tuple(put_in(row, owner.get(i)) for i, row in enumerate(rows))
-        results = tuple(put_in(row, None) for row in self.results)
-        return _Rows(unknowns, self.inputs, about, changed, results)
+        return _Rows(unknowns, self.inputs, about, changed, tuple(put_in(row, None) for row in self.results))
 
 
 def _as_filter(row: Row, column: int) -> tuple[dict[int, FieldElement], Row] | None:

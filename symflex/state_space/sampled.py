@@ -24,8 +24,7 @@ import numpy as np
 from flint import arb, arb_mat
 
 from symflex.balls import ball, precision, precisions
-from symflex.errors import Diagnostic, ModelError, refused
-from symflex.errors.diagnostic import nearest
+from symflex.errors import Diagnostic, ModelError, no_such, refused
 from symflex.errors.optional import installed
 from symflex.model.model import PI_NEARLY, ExactValue
 from symflex.options import Stated, duration, finite, frequency
@@ -60,8 +59,7 @@ class Sampling:
 
     def __post_init__(self) -> None:
         if self.method not in METHODS:
-            hint = nearest(self.method, METHODS) or "methods: " + ", ".join(METHODS)
-            raise refused(f"there is no sampling method '{self.method[:64]}'", hint)
+            raise no_such("sampling method", self.method, METHODS, "methods")
         if not self.sample > 0:
             raise refused("a sampling time must be positive")
         if self.prewarp is None:

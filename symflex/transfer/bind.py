@@ -24,8 +24,7 @@ from flint import fmpz_mpoly
 
 from symflex.algebra import LAPLACE, Factored, Radicals, Ring, degree_in
 from symflex.equations import assemble
-from symflex.errors import Diagnostic, ModelError, Text, UsageError
-from symflex.errors.diagnostic import nearest
+from symflex.errors import Diagnostic, ModelError, Text, UsageError, no_such
 from symflex.expressions import format_expression, names
 from symflex.model import ExactValue, Model, ModelParameter, with_numbers
 from symflex.model.along import COORDINATE
@@ -59,8 +58,7 @@ def read_values(
     names = [p.name for p in parameters if not p.is_imaginary]
     for name in given:
         if name not in names and not getattr(given[name], "is_imaginary", False):
-            hint = nearest(name, names) or "parameters: " + ", ".join(names)
-            raise UsageError(Diagnostic("SF902", f"there is no parameter '{name[:64]}'", None, hint))
+            raise no_such("parameter", name, names)
     values = [(p.name, _read_value(p, given[p.name]) if p.name in given else p.value) for p in parameters]
     missing = []
     for parameter, (_, value) in zip(parameters, values, strict=True):

@@ -656,8 +656,7 @@ class _Restorer:
                 else:
                     groups.append((Factored(value.ring, Fraction(1), ((factor, exponent),)), parity))
             if not odd.is_one:
-                whole = Factored(value.ring, Fraction(1), ((odd.expand(), side),))
-                groups.append((whole, tuple(total)))
+                groups.append((Factored(value.ring, Fraction(1), ((odd.expand(), side),)), tuple(total)))
         return groups
 
     def __call__(self, value: Factored) -> Factored:

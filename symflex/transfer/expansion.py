@@ -66,8 +66,7 @@ class Expansion:
         if self.ring.names == names:
             return self.radicals.tidy(value)
         images = [self.images[n] if n in self.images else self.generator(n) for n in names]
-        opened = value.map_factors(self.ring, lambda factor: self._open(factor, images))
-        return self.radicals.tidy(opened)
+        return self.radicals.tidy(value.map_factors(self.ring, lambda factor: self._open(factor, images)))
 
     def generator(self, name: str) -> Factored | None:
         """Return a generator of the plain ring, None for a name it does not have."""
@@ -149,8 +148,7 @@ def compose_rational(
                 message = f"the closed form would have more than {most} terms before it is reduced"
                 hint = "let equal parts share their parameters, or split the model"
                 raise BudgetError(Diagnostic("SF502", message, None, hint))
-        term = prod((powers[each] for each in used), start=ring.constant(int(coefficient)))
-        terms.append(term)
+        terms.append(prod((powers[each] for each in used), start=ring.constant(int(coefficient))))
     total = _sum(terms, ring)
     scale = prod((below ** degrees[i] for i, below in denominators.items()), start=Factored.number(ring, 1))
     return Factored.polynomial(ring, total) / scale

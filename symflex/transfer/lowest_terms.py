@@ -62,8 +62,7 @@ def cancel(
                 j += 1
                 continue
             power = min(m, n)
-            piece = Factored.polynomial(ring, common)
-            shared, changed = shared * piece**power, True
+            shared, changed = shared * Factored.polynomial(ring, common) ** power, True
             above[i : i + 1] = _pieces(f, common, m, power)
             below[j : j + 1] = _pieces(g, common, n, power)
             if i >= len(above):

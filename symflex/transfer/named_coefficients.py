@@ -21,9 +21,8 @@ from symflex.equations import Equations
 from symflex.expressions import Equation, Expression, Name, Negative, Number, Product, Quotient, Sum, names
 from symflex.library.elements.line import LineElement
 from symflex.library.fields import text
-from symflex.model import FieldProblem, Model, PlacedElement
+from symflex.model import Definition, FieldProblem, Model, PlacedElement
 from symflex.model.boundary import depends_on_s, varying_constants
-from symflex.model.model import Definition
 from symflex.transfer.expansion import Expansion
 
 

@@ -15,8 +15,7 @@ from symflex.algebra import KernelTable, terms_of
 from symflex.budget import spend, uncollected
 from symflex.equations import Equations
 from symflex.equations.elimination import expanded_terms, explain_singular, is_singular
-from symflex.errors import BudgetError, Diagnostic, ModelError, UsageError
-from symflex.errors.diagnostic import nearest
+from symflex.errors import BudgetError, Diagnostic, ModelError, nearest, refused
 from symflex.library.elements import LineElement
 from symflex.model import Model, with_numbers
 from symflex.model.along import is_tapered
@@ -53,7 +52,7 @@ def pick_pairs(model: Model, names: Sequence[str]) -> tuple[tuple[str, str], ...
     for name in names:
         if name not in known:
             hint = nearest(name, known) or "available: " + ", ".join(list(known)[:8])
-            raise UsageError(Diagnostic("SF902", f"there is no transfer function '{name[:100]}'", None, hint))
+            raise refused(f"there is no transfer function '{name[:100]}'", hint)
     return tuple(known[name] for name in names) if names else model.transfer_functions
 
 

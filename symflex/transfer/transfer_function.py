@@ -77,8 +77,7 @@ class ClosedForm:
 
         Raises BudgetError: SF501 when it would be too large.
         """
-        radicals = self.opening.expansion.radicals
-        return radicals.shortest(self.opening(self.num) / self.opening(self.den))
+        return self.opening.expansion.radicals.shortest(self.opening(self.num) / self.opening(self.den))
 
     @cached_property
     def generators(self) -> frozenset[str]:
@@ -116,8 +115,7 @@ class TransferFunction:
         if self.reduced is not None:
             return self.reduced
         if self.closed is None:
-            message = f"{self.name} has neither form"
-            raise ValueError(message)
+            raise ValueError(f"{self.name} has neither form")
         return self.closed.ratio
 
     def __getstate__(self) -> dict[str, object]:

@@ -118,8 +118,7 @@ def open_circuit(model: Model, source: Input) -> Constraint | None:
     if _is_read(model, use.name):
         return None
     # What is left out is named by outputs only, and those do not make the determinant.
-    elements = tuple(e for e in model.elements if e is not use)
-    without = replace(model, elements=elements, outputs=())
+    without = replace(model, elements=tuple(e for e in model.elements if e is not use), outputs=())
     return Constraint(without, f"{use.name}.i = 0", words, "")
 
 
@@ -174,8 +173,7 @@ def replace_condition(model: Model, source: Input, output: Expression) -> Replac
         return None
     ((field, loaded),) = places
     zero = Equation(calls[0], Number(Fraction(0)))
-    conditions = tuple(zero if c is loaded else c for c in field.conditions)
-    changed = replace(field, conditions=conditions)
+    changed = replace(field, conditions=tuple(zero if c is loaded else c for c in field.conditions))
     fields = tuple(changed if f is field else f for f in model.fields)
     held = format_expression(zero)
     words = f"{held} in place of {format_expression(loaded)}"

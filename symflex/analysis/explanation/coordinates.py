@@ -259,8 +259,7 @@ def parted_at(model: Model, output: str) -> Model:
         return model
     point = f"point of {owner}"  # no name contains blanks
     node = NetworkNode(point, domain)
-    length = dict(use.values)[element.length]
-    left = Sum((length, Negative(call.argument)))
+    left = Sum((dict(use.values)[element.length], Negative(call.argument)))
 
     def piece(name: str, ends: tuple[NodeReference, ...], long: Expression) -> PlacedElement:
         values = tuple((n, long if n == element.length else v) for n, v in use.values)

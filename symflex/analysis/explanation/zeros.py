@@ -220,8 +220,7 @@ def _by_condition(case: _Case) -> ZeroExplanation | None:
     if relation is None or relation.transmission is None or not relation.apart.is_constant:
         return None
     # What the output does to the value it shows is all that is left of the numerator.
-    s = case.equations.ring.generator(LAPLACE)
-    order = relation.transmission.exponent_of(s)
+    order = relation.transmission.exponent_of(case.equations.ring.generator(LAPLACE))
     filtered = relation.transmission / Factored.generator(case.equations.ring, LAPLACE) ** order
     after = next(f for f in constraint.model.fields if f.name == replaced.field.name)
     ends = (ends_of_field(replaced.field), ends_of_field(after))
@@ -240,8 +239,7 @@ def _by_terminals(case: _Case) -> ZeroExplanation | None:
     held = None if constraint is None else case.constrained(constraint)
     if constraint is None or held is None:
         return None
-    one = Factored.number(case.equations.ring, 1)
-    relation = case.relate(one, held)
+    relation = case.relate(Factored.number(case.equations.ring, 1), held)
     if relation is None or relation.transmission is None or not relation.apart.is_constant:
         return None
     s = case.equations.ring.generator(LAPLACE)
@@ -260,12 +258,10 @@ def _text(equations: Equations, value: Factored) -> str:
     """Return a product of factors in s in the spec language; ``...`` when it is long or holds waves."""
     if value.is_constant:
         return ""
-    names = {c.generator: c.expression for c in equations.constants}
-    arranger = Arranger.plain(equations.ring, names)
+    arranger = Arranger.plain(equations.ring, {c.generator: c.expression for c in equations.constants})
     if any(value.depends_on(name) for name in waves_of(equations)):
         return "..."
-    factors = [power(arranger.collected(f), e) for f, e in value.factors]
-    text = format_expression(product_of(factors))
+    text = format_expression(product_of([power(arranger.collected(f), e) for f, e in value.factors]))
     return text if len(text) <= LONGEST else "..."
 
 

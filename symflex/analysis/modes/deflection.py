@@ -16,7 +16,7 @@ from symflex.analysis.modes.bound_equations import BoundEquations, solution
 from symflex.analysis.modes.shape import Deflection, is_accurate, normalised
 from symflex.balls import precision, precisions
 from symflex.budget import spend
-from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
+from symflex.errors import Diagnostic, ModelError, UncertifiedError, refused
 from symflex.library.elements import Variable
 from symflex.model.loss_factors import check_causal
 from symflex.model.model import PI_NEARLY
@@ -35,7 +35,7 @@ def deflection(bound: AnyBoundFunction, hertz: Fraction) -> Deflection:
     """
     equations, ends = BoundEquations(bound, "a deflection"), bound.source
     if hertz < 0:
-        raise UsageError(Diagnostic("SF902", "the frequency of a deflection is not negative"))
+        raise refused("the frequency of a deflection is not negative")
     if not hertz:
         check_causal(ends.model, "a response at omega <= 0")
     entries = equations.at.entries(ends.output.name, ends.input.name)[:-1]

@@ -17,7 +17,7 @@ from symflex.analysis.modes.bound_equations import BESIDE, BoundEquations, null_
 from symflex.analysis.modes.shape import EnclosedModeShape, is_accurate, normalised
 from symflex.balls import precision
 from symflex.budget import spend
-from symflex.errors import BudgetError, Diagnostic, UncertifiedError, UsageError
+from symflex.errors import BudgetError, Diagnostic, UncertifiedError, UsageError, refused
 from symflex.library.elements import Variable
 from symflex.roots import Band, Modes, PoleZeroMap, Region, Root
 from symflex.roots.locate import locate
@@ -108,8 +108,7 @@ def lowest_modes(
         except UsageError:
             continue  # a common factor that is not a mode of the model
         shapes += [NumberedShape(shape, is_hidden) for shape in found_here]
-    kept = tuple(s for i, s in enumerate(shapes) if i < count or s.shape.pole.re > 0)
-    return kept, located.verdict
+    return tuple(s for i, s in enumerate(shapes) if i < count or s.shape.pole.re > 0), located.verdict
 
 
 def _shapes(
@@ -140,8 +139,7 @@ class _ModeSearch:
     def numbered(self, number: int, digits: int) -> tuple[Root, int]:
         """Return the pole of a mode, and which of its modes it is."""
         if number < 0:
-            message = f"modes are numbered from 1, and mode 0 is the motion at s = 0; found {number}"
-            raise UsageError(Diagnostic("SF902", message))
+            raise refused(f"modes are numbered from 1, and mode 0 is the motion at s = 0; found {number}")
         located = self.map(Modes(max(number, 1)), digits)
         poles = located.poles
         if number == 0:
@@ -149,7 +147,7 @@ class _ModeSearch:
             rigid = next((p for p in (*poles, *hidden) if p.is_zero), None)
             if rigid is None:
                 message = "the model has no pole at 0, so no rigid-body motion"
-                raise UsageError(Diagnostic("SF902", message, None, "modes are numbered from 1"))
+                raise refused(message, "modes are numbered from 1")
             return rigid, 0
         before = 0
         for root in poles:
@@ -160,7 +158,7 @@ class _ModeSearch:
             before += root.multiplicity
         count = f"{before} mode" + ("" if before == 1 else "s")
         message = f"{self.bound.name} has only {count} besides those at s = 0; mode {number} does not exist"
-        raise UsageError(Diagnostic("SF902", message))
+        raise refused(message)
 
     def again(self, root: Root, digits: int) -> Root:
         """Return a root known already, to more digits where it is found again."""
@@ -222,9 +220,8 @@ class _ModeSearch:
                     return tuple(x for x in scaled if x is not None) if None not in scaled else ()
                 if dimension == 1:
                     # With more dimensions it may be that the balls are too wide for fewer.
-                    message = f"s = {_printed(root)} is not a pole of the model's equations"
                     hint = "zeros have no mode shape, and neither do poles of a filter in an output"
-                    raise UsageError(Diagnostic("SF902", message, None, hint))
+                    raise refused(f"s = {_printed(root)} is not a pole of the model's equations", hint)
                 return ()
         return ()
 

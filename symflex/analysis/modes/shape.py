@@ -15,8 +15,7 @@ from flint import acb, acb_mat, arb, arb_mat
 
 from symflex.along.law import BoundLaw
 from symflex.balls import current_bits, precision
-from symflex.errors import Diagnostic, UsageError
-from symflex.errors.diagnostic import nearest
+from symflex.errors import nearest, refused
 from symflex.library.elements import Variable
 from symflex.roots import Root
 
@@ -113,8 +112,7 @@ class DistributedShape:
             return 0
         if quantity not in self.states:
             hint = nearest(quantity, self.states) or "available: " + ", ".join(self.states)
-            message = f"there is no '{quantity[:64]}' along '{self.name}'"
-            raise UsageError(Diagnostic("SF902", message, None, hint))
+            raise refused(f"there is no '{quantity[:64]}' along '{self.name}'", hint)
         return self.states.index(quantity)
 
     def at(self, x: Fraction) -> tuple[acb, ...]:
@@ -225,7 +223,7 @@ class EnclosedShape:
             name = f"{name}.y"
         if name not in motions:
             hint = nearest(name, motions) or "available: " + ", ".join(list(reversed(motions))[:8])
-            raise UsageError(Diagnostic("SF902", f"nothing is called '{name[:64]}' in the mode", None, hint))
+            raise refused(f"nothing is called '{name[:64]}' in the mode", hint)
         return motions[name]
 
     def along(self, name: str) -> DistributedShape:
@@ -233,8 +231,7 @@ class EnclosedShape:
         parts = {part.name: part for part in self.distributed}
         if name not in parts:
             hint = nearest(name, parts) or ("available: " + ", ".join(parts) if parts else None)
-            message = f"'{name[:64]}' is not a distributed element or field"
-            raise UsageError(Diagnostic("SF902", message, None, hint))
+            raise refused(f"'{name[:64]}' is not a distributed element or field", hint)
         return parts[name]
 
 

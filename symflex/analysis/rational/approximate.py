@@ -24,7 +24,7 @@ from symflex.analysis.rational.laurent import about_zero, expand_at_zero, residu
 from symflex.analysis.rational.toolboxes import check_form
 from symflex.analysis.response import check_band, default_band
 from symflex.balls import current_bits, precision, to_complex_mpmath, to_mpmath
-from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
+from symflex.errors import Diagnostic, ModelError, UncertifiedError, refused
 from symflex.model.loss_factors import check_causal
 from symflex.roots import (
     Band,
@@ -40,8 +40,7 @@ from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import as_quotient, locate
 from symflex.roots.pole_zero_map import is_right
 from symflex.roots.root import count_roots, exact_fraction, modes_of
-from symflex.transfer import AnyBoundFunction
-from symflex.transfer.bound import EnclosedTransferFunction
+from symflex.transfer import AnyBoundFunction, EnclosedTransferFunction
 
 FURTHER = (1, 4)  # modes beyond those kept that are looked for: a double root is not divided
 
@@ -74,7 +73,7 @@ def truncate(bound: AnyBoundFunction, modes: int, digits: int) -> KeptRoots:
     Poles in the right half-plane stay; zeros go from above until there are no more of them, unless all stay.
     """
     if modes < 0:
-        raise UsageError(Diagnostic("SF902", f"the number of modes cannot be {modes}"))
+        raise refused(f"the number of modes cannot be {modes}")
     for further in FURTHER:
         region = Everything() if bound.is_rational else Modes(modes + further)
         located = locate(bound, region, digits)
@@ -252,8 +251,7 @@ def modal_form(bound: AnyBoundFunction, kept: KeptRoots, digits: int) -> Approxi
                     c - coefficient * _taylor(residue.pole, power, i) for i, c in enumerate(correction)
                 ]
             others = acb_poly.from_roots(_repeated([r for r in kept.poles if r is not root]))
-            own = acb_poly([-root.enclosure(), 1])
-            num = num + others * own ** (root.multiplicity - power) * coefficient
+            num = num + others * acb_poly([-root.enclosure(), 1]) ** (root.multiplicity - power) * coefficient
         correction = [acb(about_zero(c.real)) for c in correction]
         num = num + whole * acb_poly(correction)
         if start.order > 0:

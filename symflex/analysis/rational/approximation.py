@@ -153,8 +153,7 @@ def scan_error(
         [float(root.im.mid()) for root in roots.poles if root.on_imaginary_axis and root.im > 0]
     )
     error_at = partial(_error_at, bound, approximation, zeros, on_axis)
-    omega = adaptive_grid(bound, low_hz, high_hz, POINTS, roots)
-    frequencies = omega / (2 * np.pi)
+    frequencies = adaptive_grid(bound, low_hz, high_hz, POINTS, roots) / (2 * np.pi)
     errors = np.array([error_at(f) for f in frequencies.tolist()])
     return ErrorScan(frequencies, errors, error_at)
 

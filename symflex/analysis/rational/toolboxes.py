@@ -23,8 +23,7 @@ from flint import acb, fmpz_mpoly
 
 from symflex.analysis.response import real_numbers
 from symflex.balls import to_complex_mpmath
-from symflex.errors import Diagnostic, ModelError, UsageError
-from symflex.errors.diagnostic import nearest
+from symflex.errors import Diagnostic, ModelError, no_such, refused
 from symflex.errors.optional import installed
 from symflex.model import with_numbers
 from symflex.model.loss_factors import check_causal
@@ -256,13 +255,11 @@ def frequency_response_data(
     grid = real_numbers(omega, "omega")
     is_increasing = grid.ndim == 1 and bool(np.all(np.diff(grid) > 0))
     if not (is_increasing and grid.size and np.isfinite(grid).all() and grid[0] >= 0):
-        message = "omega must be an increasing array of finite numbers that are not negative [rad/s]"
-        raise UsageError(Diagnostic("SF902", message))
+        raise refused("omega must be an increasing array of finite numbers that are not negative [rad/s]")
     values = np.array([value(complex(0.0, w)) for w in grid.tolist()], dtype=np.complex128)
     if not np.isfinite(values).all():
         place = float(grid[~np.isfinite(values)][0])
-        message = f"{source.name} has a pole at omega = {place:g} rad/s"
-        raise UsageError(Diagnostic("SF902", message, None, "leave this frequency out"))
+        raise refused(f"{source.name} has a pole at omega = {place:g} rad/s", "leave this frequency out")
     names = {"inputs": [source.input.name], "outputs": [source.output.name]}
     data = control.FrequencyResponseData(values, grid, name=label, **names)
     data.metadata = metadata
@@ -283,5 +280,4 @@ def end_units(source: AnyTransferFunction) -> dict[str, object]:
 def check_form(form: str, forms: Sequence[str]) -> None:
     """Raise SF902 for a form that is not one of these."""
     if form not in forms:
-        hint = nearest(form, forms) or "forms: " + ", ".join(forms)
-        raise UsageError(Diagnostic("SF902", f"there is no form '{form[:64]}'", None, hint))
+        raise no_such("form", form, forms)

@@ -43,9 +43,7 @@ from symflex.analysis.time_response.sampled import Gathered, Sampled
 from symflex.balls import bits_for_digits, precision
 from symflex.budget import spend
 from symflex.errors import Diagnostic, UncertifiedError
-from symflex.roots import Root
-from symflex.roots.polynomial_roots import find_polynomial_roots
-from symflex.roots.problem import RootProblem
+from symflex.roots import Root, RootProblem, find_polynomial_roots
 
 
 class TooManyEchoesError(Exception):

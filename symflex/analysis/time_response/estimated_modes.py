@@ -22,11 +22,10 @@ from symflex.analysis.time_response.sampled import PartialSum, Sampled
 from symflex.balls import precision, precisions
 from symflex.budget import spend
 from symflex.errors import Diagnostic, UncertifiedError
-from symflex.roots import Root
+from symflex.roots import Modes, Root
 from symflex.roots.distributed.proof import holes_about
 from symflex.roots.distributed.side import accumulation_points
 from symflex.roots.locate import locate
-from symflex.roots.region import Modes
 from symflex.transfer import AnyBoundFunction
 
 

@@ -49,8 +49,7 @@ from symflex.analysis.time_response.settling import falls_off, settled
 from symflex.analysis.time_response.wave_echoes import wave_quotient
 from symflex.balls import at_centre, bits_for_digits, precision
 from symflex.budget import spend
-from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
-from symflex.errors.diagnostic import nearest
+from symflex.errors import Diagnostic, ModelError, UncertifiedError, no_such, refused
 from symflex.expressions.format import decimal_exponent
 from symflex.model.loss_factors import check_causal
 from symflex.roots.functions.simplified import without_lengths_of_zero
@@ -114,8 +113,7 @@ def time_response(
     """
     check_causal(bound.source.model, "a response in time")
     if kind not in INTEGRATIONS:
-        hint = nearest(kind, INTEGRATIONS) or "inputs: " + ", ".join(INTEGRATIONS)
-        raise UsageError(Diagnostic("SF902", f"there is no input '{kind[:64]}'", None, hint))
+        raise no_such("input", kind, INTEGRATIONS)
     if shaper is not None:
         return _shaped(bound, kind, times, digits, shaper)
     integrations = INTEGRATIONS[kind]
@@ -124,8 +122,7 @@ def time_response(
     elif not (bound.is_reduced or bound.is_rational):
         sampled = _of_network(bound, integrations, times)
     else:
-        quotient = without_lengths_of_zero(as_quotient(bound))
-        sampled = _answer(Asked(quotient, integrations, times, digits))
+        sampled = _answer(Asked(without_lengths_of_zero(as_quotient(bound)), integrations, times, digits))
     unit, reason = unit_of_response(bound.source.output, bound.source.input), sampled.reason
     parts = sampled.values, sampled.impulses, sampled.jumps, reason is None, reason
     response = EnclosedResponse(bound.name, kind, unit, times.seconds, *parts, digits)
@@ -154,7 +151,7 @@ def _shaped(
     accuracy = min(int(t.rel_accuracy_bits()) for t, _ in shaper.impulses[1:])
     if accuracy < bits_for_digits(inner):
         message = f"the shaper has {shaper.digits} digits, too few for a response with {digits}"
-        raise UsageError(Diagnostic("SF902", message, None, "make a shaper with more digits"))
+        raise refused(message, "make a shaper with more digits")
     whole = time_response(bound, kind, times, inner)
     (_, first), *others = shaper.impulses  # the first stands at 0
     with precision(shaper.bits):
@@ -163,8 +160,7 @@ def _shaped(
         jumps = [JumpAt(j.time, first * j.height) for j in whole.jumps]
         seconds = times.enclosed()
         last = seconds[-1] if seconds else arb(0)
-    ends = SampleTimes.of([0.0, float(last.mid()) or 1.0])
-    begun = time_response(bound, kind, ends, inner).enclosures[0]
+    begun = time_response(bound, kind, SampleTimes.of([0.0, float(last.mid()) or 1.0]), inner).enclosures[0]
     for moment, amplitude in others:
         with precision(shaper.bits):
             start, later = times.since(moment)

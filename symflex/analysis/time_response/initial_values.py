@@ -18,16 +18,14 @@ from symflex.analysis.time_response.enclosed_response import FREE, EnclosedRespo
 from symflex.analysis.time_response.find import time_response
 from symflex.balls import precision
 from symflex.equations import assemble
-from symflex.errors import Diagnostic, ModelError, Source, SpecError, Text, UsageError
-from symflex.errors.diagnostic import nearest
+from symflex.errors import Diagnostic, ModelError, Source, SpecError, Text, UsageError, nearest, refused
 from symflex.expressions import format_expression, quotient
 from symflex.model import Model, Output, load_with, with_numbers
 from symflex.print.forms.arrange import Arranger
 from symflex.quantities import parse_quantity, unit_of
 from symflex.state_space.popov import FieldElement
 from symflex.state_space.realise import StateSpace, derivative, quantity_of, realise, unit_of_quantity
-from symflex.transfer import AnyBoundFunction
-from symflex.transfer.derive import nested_transfer
+from symflex.transfer import AnyBoundFunction, nested_transfer
 from symflex.transfer.of_model import derive_bound
 from symflex.transfer.transfer_function import unit_of_response
 
@@ -62,8 +60,7 @@ def free_motion(model: Model, pair: tuple[str, str], initial: Mapping[str, str])
         match = _QUANTITY.fullmatch(name.replace(" ", ""))
         if match is None or match["quantity"] not in unknowns:
             hint = nearest(name, unknowns) or f"x, s*x or coil.i for instance; here {', '.join(unknowns)}"
-            message = f"'{name[:64]}' is not a quantity whose initial value can be given"
-            raise UsageError(Diagnostic("SF902", message, None, hint))
+            raise refused(f"'{name[:64]}' is not a quantity whose initial value can be given", hint)
         variable, order = unknowns[match["quantity"]], int(match["order"] or bool(match["s"]))
         sizes.append(_value(name, text, unit_of_quantity(model, variable, order)))
         shown.append(Output(f"_{i}", derivative(quantity_of(variable), order)))
@@ -75,7 +72,7 @@ def free_motion(model: Model, pair: tuple[str, str], initial: Mapping[str, str])
         if others or share is None or place in begins:
             states = ", ".join(format_expression(state.terms[0][0]) for state in system.states)
             message = f"'{name}' is not a state, nor a multiple of one that has no other value"
-            raise UsageError(Diagnostic("SF902", message, None, f"give values of {states}"))
+            raise refused(message, f"give values of {states}")
         begins[place] = f"{size}/({_text(system, share)})"
     return derive_bound(load_with(Source("initial values", _spec(system, begins)), {}), [("y", "u")])[0]
 

@@ -30,7 +30,7 @@ from symflex.analysis.time_response.sample_times import SampleTimes
 from symflex.analysis.time_response.sampled import PartialSum, Refused
 from symflex.balls import bits_for_digits, precision
 from symflex.errors import BudgetError, UncertifiedError
-from symflex.roots import Root
+from symflex.roots import Modes, Root
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import Cell, RootOnPathError
 from symflex.roots.degenerate import degenerate_points
@@ -38,7 +38,6 @@ from symflex.roots.distributed.side import Side
 from symflex.roots.engines import LOSSLESS
 from symflex.roots.plane.local_roots import prove_simple
 from symflex.roots.polynomial_roots import in_order
-from symflex.roots.region import Modes
 from symflex.roots.root import overlap
 from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 

@@ -27,8 +27,7 @@ from symflex.analysis.rational.laurent import principal_part
 from symflex.analysis.time_response.sample_times import SampleTimes
 from symflex.balls import raised, series_quotient, series_terms
 from symflex.roots import Root
-from symflex.transfer import BoundTransferFunction
-from symflex.transfer.bound import EnclosedTransferFunction
+from symflex.transfer import BoundTransferFunction, EnclosedTransferFunction
 
 
 @dataclass(frozen=True, slots=True)

@@ -55,8 +55,7 @@ from symflex.model.model import INPUT_KINDS, Input, NodeReference, Output
 from symflex.model.signs import line_of, value_along
 from symflex.roots import Root
 from symflex.roots.passivity import energy_proof
-from symflex.transfer import BoundTransferFunction
-from symflex.transfer.bind import bind
+from symflex.transfer import BoundTransferFunction, bind
 from symflex.transfer.of_model import assemble, derive_all
 
 STEP, RAMP = 1, 2  # impulses, integrated so often

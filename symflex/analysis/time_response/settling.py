@@ -29,11 +29,9 @@ from symflex.analysis.time_response.sample_times import SampleTimes
 from symflex.analysis.time_response.sampled import Sampled
 from symflex.balls import UndecidedError, bits_for_digits, covered, precision
 from symflex.budget import spend
-from symflex.roots import Modes, Root
+from symflex.roots import Modes, Root, RootProblem, find_polynomial_roots
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.locate import locate
-from symflex.roots.polynomial_roots import find_polynomial_roots
-from symflex.roots.problem import RootProblem
 from symflex.transfer import BoundTransferFunction
 
 

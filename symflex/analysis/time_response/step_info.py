@@ -90,8 +90,7 @@ class StepInfo:
     def _repr_html_(self) -> str:
         from symflex.print.html import passages_html  # only notebooks ask
 
-        rows = self._shown(TEXT_DIGITS)
-        return passages_html([Passage(["step response"], rows, has_head=False)])
+        return passages_html([Passage(["step response"], self._shown(TEXT_DIGITS), has_head=False)])
 
     def lines(self, unit: str) -> list[str]:
         """Return what is found as text, with ten digits at most."""

@@ -436,11 +436,9 @@ class Body:
 
 def conditions_of(program: tree.Piecewise, scope: Body) -> list[str]:
     """Print what conditions need, and return the conditions."""
-    fixed = program.tests.needed([c.scale for c in program.conditions])
-    scope.assign(fixed.constants)
+    scope.assign(program.tests.needed([c.scale for c in program.conditions]).constants)
     limits = [limit_text(c, scope) for c in program.conditions]
-    varied = program.tests.needed([c.quantity for c in program.conditions])
-    scope.assign(varied.every)
+    scope.assign(program.tests.needed([c.quantity for c in program.conditions]).every)
     conditions = []
     for condition, limit in zip(program.conditions, limits, strict=True):
         quantity = scope.term(condition.quantity)

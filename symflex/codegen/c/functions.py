@@ -127,8 +127,7 @@ class Functions:
 
     def _piece(self, name: str, piece: tree.CodePiece) -> list[list[str]]:
         scope = Body.of(self.members, S)
-        code = piece.code.needed(piece.code.values)
-        scope.assign(code.every)
+        scope.assign(piece.code.needed(piece.code.values).every)
         values = [scope.term(v) for v in piece.code.values]
         if not piece.circle:
             num, den = values
@@ -211,8 +210,7 @@ def lanes(program: tree.Piecewise, members: Mapping[str, str]) -> list[str]:
     """Return the body of the function that computes the frequency response, where :func:`fits_lanes`."""
     outer = Body.of(members, LANE)
     (condition,) = program.conditions
-    fixed = program.tests.needed([condition.scale])
-    outer.assign(fixed.constants)
+    outer.assign(program.tests.needed([condition.scale]).constants)
     limit = limit_text(condition, outer)
     tested = program.tests.needed([condition.quantity])
     outer.assign(tested.constants)

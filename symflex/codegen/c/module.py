@@ -17,7 +17,7 @@ from symflex.codegen.module_text import (
     value_as_written,
     wrapped,
 )
-from symflex.errors import Diagnostic, UsageError
+from symflex.errors import refused
 
 _FILE_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*")
 COMMENT = BlockComment("/*", "*/", " * ", ("??",))  # a comment of C; trigraphs begin with two question marks
@@ -29,7 +29,7 @@ def c_files(contents: Contents) -> Export:
     name = None if contents.is_alone else contents.stem
     if name is not None and not _FILE_NAME.fullmatch(name):
         message = f"'{inert(name)[:64]}' cannot be the name of a C header"
-        raise UsageError(Diagnostic("SF902", message, None, "use only ASCII letters, digits and _ . + -"))
+        raise refused(message, "use only ASCII letters, digits and _ . + -")
     return _Files(contents, name).made()
 
 

@@ -37,9 +37,8 @@ from symflex.budget import spend
 from symflex.codegen.program.forge import Forge, schedule
 from symflex.codegen.program.nodes import Laplace, Piecewise, RootFactor, Within
 from symflex.errors import Diagnostic, ModelError
-from symflex.roots import PoleZeroMap, Root
+from symflex.roots import Band, Everything, Modes, PoleZeroMap, Root
 from symflex.roots.locate import DEFAULT_MODES, locate
-from symflex.roots.region import Band, Everything, Modes
 from symflex.roots.root import groups, modes_of
 from symflex.transfer import AnyBoundFunction, AnyTransferFunction, BoundNested, BoundTransferFunction
 from symflex.transfer.bound import Enclosed
@@ -87,8 +86,7 @@ class EnclosedValues:
         point = acb(s.real, s.imag)
         for bits in precisions(self._first_bits, LAST_BITS):
             spend()
-            function = self._function(bits)
-            value, slope = function.value_and_slope(point)
+            value, slope = self._function(bits).value_and_slope(point)
             if not (value.is_finite() or self.bound.is_reduced):
                 # Its program divides by zero for these values; without a slope errors count more.
                 value, slope = self.bound.solved(point, bits), acb(0)

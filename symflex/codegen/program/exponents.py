@@ -231,8 +231,7 @@ class RealAxis:
             for monomial, coefficient in factor.terms():
                 sign = -1 if (int(monomial[0]) - lowest) % 4 else 1
                 terms[tuple(int(e) for e in monomial)] = int(coefficient) * sign
-            real = Factored.polynomial(self.ring, self.ring.context.from_dict(terms))
-            result = result * real**exponent
+            result = result * Factored.polynomial(self.ring, self.ring.context.from_dict(terms)) ** exponent
             turn += lowest * exponent
         return result, turn % 4
 

@@ -90,8 +90,7 @@ def _basis(step: int, roots: Sequence[tuple[int, int]]) -> LocalBasis:
 def pair_basis(exponents: Iterable[Sequence[tuple[int, int]]]) -> LocalBasis:
     """Return the basis for exponents ``a*lambda_1 + b*lambda_2``."""
     orbits = sorted({tuple(sorted((abs(a), abs(b)), reverse=True)) for (a, _), (b, _) in exponents})
-    whole = prod((_orbit(a, b) for a, b in orbits), start=SYMMETRIC.constant(1))
-    powers = by_powers(SYMMETRIC, whole)
+    powers = by_powers(SYMMETRIC, prod((_orbit(a, b) for a, b in orbits), start=SYMMETRIC.constant(1)))
     order = max(powers)
     terms = ((powers[n].terms() if n in powers else ()) for n in range(order))
     own = tuple({(int(p), int(q)): int(c) for (_, p, q), c in each} for each in terms)

@@ -314,8 +314,7 @@ class Site:
         images = [(lambda t, i=i: self._real_term(i, t, scales)) for i in range(len(self.families))]
         real = []
         for s in sums:
-            leaves = {key: self.polynomial(p) for key, p in s.terms.items()}
-            real.append(self._sum(leaves, images))
+            real.append(self._sum({key: self.polynomial(p) for key, p in s.terms.items()}, images))
         return tuple(real)
 
     def _real_term(

@@ -123,8 +123,7 @@ def choose_band(
     values = EnclosedValues(bound)
     form = BandForm.zero(tf.name) if bound.is_zero else band_form(values, up_to_hz)
     program, high = form.program(), form.end_hz
-    low = (tf.model.analysis.band or DEFAULT_BAND)[0]
-    band = (min(low, high / 1000), high)
+    band = (min((tf.model.analysis.band or DEFAULT_BAND)[0], high / 1000), high)
     centers = [f for f in form.centers_hz if band[0] <= f <= band[1]]
     if len(centers) > 2 * MOST_EXTREMES:
         centers = [*centers[:MOST_EXTREMES], *centers[-MOST_EXTREMES:]]
@@ -385,8 +384,7 @@ class References:
         """Return those at so many frequencies over a band [Hz], besides those around poles and zeros."""
         if bound.is_reduced:
             bound.expect(0, tau * float(band_hz[1]))
-        count = max(1, int(samples * _part(bound)))
-        hertz = sample_frequencies(bound, band_hz, count, pieces)
+        hertz = sample_frequencies(bound, band_hz, max(1, int(samples * _part(bound))), pieces)
         return cls(EnclosedValues(bound), 1j * (tau * hertz))
 
     @property

@@ -75,8 +75,7 @@ def python_module(contents: Contents, dialect: Dialect) -> Export:
     text = header(dialect.first, model, contents.verified[: len(functions)], dialect.remark)
     lints = LINTS["traced" if dialect.is_traced else "numpy in pieces" if is_piecewise else "numpy"]
     start = f"{text}# ruff: noqa: {lints}  (names and texts are the model's)\n\n"
-    imports = f"from __future__ import annotations\n\n{dialect.imports}\n"
-    return Export(start + imports + "\n\n".join(blocks))
+    return Export(start + f"from __future__ import annotations\n\n{dialect.imports}\n" + "\n\n".join(blocks))
 
 
 @dataclass(frozen=True)

@@ -404,8 +404,7 @@ def in_pieces(program: Piecewise) -> Piecewise:
     if not program.is_lumped:
         return program
     needs = (piece.code.needed(piece.code.values) for piece in program.code)
-    code = tuple(CodePiece(replace(own, values=(*own.values, ONE))) for own in needs)
-    return replace(program, code=code)
+    return replace(program, code=tuple(CodePiece(replace(own, values=(*own.values, ONE))) for own in needs))
 
 
 def cases_of(program: Piecewise) -> tuple[Cases, ...]:

@@ -35,7 +35,7 @@ from symflex.data.fitting.problem import FitProblem, fit_problem
 from symflex.data.fitting.resonances import LOGARITHMIC, UNITS, Complex, Free, Mask, Resonances, Values, Whole
 from symflex.data.fitting.starts import with_delays
 from symflex.data.measurement import MeasuredResponse
-from symflex.errors import DataError, Diagnostic, FitError, nearest, refused
+from symflex.errors import DataError, Diagnostic, FitError, no_such, refused
 from symflex.options import FitOptions
 
 SLOPES = tuple(range(-4, 5))
@@ -206,8 +206,7 @@ def fit_resonances(
     choices = ((given.start, ("auto", *STARTS), "start"), (given.criterion, CRITERIA, "criterion"))
     for name, allowed, what in choices:
         if name not in allowed:
-            hint = nearest(name, allowed) or f"choose from: {', '.join(allowed)}"
-            raise refused(f"there is no {what} '{name[:64]}'", hint)
+            raise no_such(what, name, allowed, "choose from")
     if bases is not None and given.slope is not None:
         raise refused("a power of s is for fits without a base")
     for response in measured:

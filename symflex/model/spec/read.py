@@ -8,8 +8,7 @@ import stat
 from pathlib import Path
 from typing import Final
 
-from symflex.errors import Diagnostic, Source, Span, SpecError, UsageError
-from symflex.errors.diagnostic import nearest
+from symflex.errors import Diagnostic, Source, Span, SpecError, UsageError, nearest
 from symflex.files.examples import example_of
 
 DATA: Final = (

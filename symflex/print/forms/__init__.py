@@ -8,8 +8,7 @@ from importlib import import_module
 from typing import Any
 
 from symflex.algebra import degree_in
-from symflex.errors import Diagnostic, InternalError, UsageError
-from symflex.errors.diagnostic import nearest
+from symflex.errors import Diagnostic, InternalError, UsageError, nearest, no_such, refused
 from symflex.expressions import Expression, Name, Number, Sum, format_expression, names, nodes, quotient
 from symflex.print.forms.arrange import Arranged, Arranger, length, reading
 from symflex.print.forms.definitions import definitions_form, shows_origin
@@ -119,16 +118,14 @@ def _arranged(
     if isinstance(tf, NestedTransferFunction):
         if form not in (None, "nested"):
             message = f"{tf.name} was derived in nested form, which cannot be expanded into other forms"
-            raise UsageError(Diagnostic("SF902", message, None, "ask for the expanded representation"))
+            raise refused(message, "ask for the expanded representation")
         from symflex.print.forms.nested import nested_form  # only with large models
 
         return nested_form(tf)
     if form == "nested":
-        message = f"{tf.name} is derived in expanded form"
-        raise UsageError(Diagnostic("SF902", message, None, "ask for the nested representation"))
+        raise refused(f"{tf.name} is derived in expanded form", "ask for the nested representation")
     if form is not None and form not in FORMS:
-        hint = nearest(form, FORMS) or "forms: " + ", ".join(FORMS)
-        raise UsageError(Diagnostic("SF902", f"there is no form '{form[:64]}'", None, hint))
+        raise no_such("form", form, FORMS)
     if form is None and tf.model.analysis.print:
         from symflex.print.forms.own import own_form  # few models ask for it
 

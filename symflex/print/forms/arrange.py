@@ -493,8 +493,7 @@ class Arranged:
         if arranger.kept is not None:
             return ProductPrinter(arranger)
         symbols = tuple((name, format_expression(e)) for name, e in sorted(arranger.names.items()))
-        degrees = tuple(sorted(arranger.degrees.items()))
-        key = (arranger.ring.names, symbols, degrees, arranger.apart)
+        key = (arranger.ring.names, symbols, tuple(sorted(arranger.degrees.items())), arranger.apart)
         return self._printers.setdefault(key, ProductPrinter(arranger))
 
 

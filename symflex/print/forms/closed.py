@@ -251,8 +251,7 @@ def _exponential(taper: _Taper, wave: _Wave, places: Places) -> Iterator[Line]:
         for i, j, called in entries:
             grown = taper.grown(wave.growths[i], length)
             if i == j:
-                own = sum_of([cosh, taper.product(turn * (-1) ** i, sinh)])
-                yield called, taper.product(*grown, own)
+                yield called, taper.product(*grown, sum_of([cosh, taper.product(turn * (-1) ** i, sinh)]))
             else:
                 factor = length / wave.slope if i == 0 else wave.square * wave.slope * length
                 yield called, taper.product(factor, *grown, sinh)

@@ -141,8 +141,7 @@ def _added(terms: Iterable[Expression]) -> list[Expression]:
 
 def _is_large(tf: TransferFunction) -> bool:
     """Tell whether rewriting the expanded polynomials would cost more than it can shorten."""
-    terms = max(tf.length, 1)
-    return terms > (REWRITE_LIMIT if tf.definitions else SMALL)
+    return max(tf.length, 1) > (REWRITE_LIMIT if tf.definitions else SMALL)
 
 
 def _from_closure(tf: TransferFunction, closed: ClosedForm) -> tuple[Expression, Expression]:
@@ -150,8 +149,7 @@ def _from_closure(tf: TransferFunction, closed: ClosedForm) -> tuple[Expression,
     base = Arranger.plain(closure.base, constant_symbols(tf))
     named = _named_sums(tf, closure)
     symbols = {**constant_symbols(tf), **{n: named.get(n, base.grouped_by_s(p)) for n, p in closure.sums}}
-    degrees = {n: degree_in(p, 0) for n, p in closure.sums}
-    arranger = Arranger(closure.ring, symbols, degrees)
+    arranger = Arranger(closure.ring, symbols, {n: degree_in(p, 0) for n, p in closure.sums})
     return arranger.grouped(closed.num), arranger.grouped(closed.den)
 
 

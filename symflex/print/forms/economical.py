@@ -267,8 +267,7 @@ def _doubled(tf: TransferFunction, length: Factored) -> TransferFunction | None:
             replace(k, length=twice) if k.wavenumber and k.length is length else k for k in tf.kernels.kernels
         ),
     )
-    ratio = NormalForm(ring, table).reduce_factored(result)
-    return replace(tf, reduced=ratio, kernels=table, parts=None)
+    return replace(tf, reduced=NormalForm(ring, table).reduce_factored(result), kernels=table, parts=None)
 
 
 def _in_doubles(tf: TransferFunction, factor: fmpz_mpoly, angles: Sequence[Angle]) -> Factored | None:

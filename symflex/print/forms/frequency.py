@@ -11,9 +11,8 @@ from fractions import Fraction
 
 from flint import fmpz_mpoly
 
-from symflex.algebra import LAPLACE, Dispersion, Factored, Kernel, KernelTable, Ring
+from symflex.algebra import LAPLACE, Dispersion, Factored, Kernel, KernelTable, Ring, by_powers
 from symflex.algebra.normal_form import with_image
-from symflex.algebra.ring import by_powers
 from symflex.expressions import (
     Call,
     Expression,

@@ -16,10 +16,9 @@ from typing import TYPE_CHECKING
 
 from flint import fmpz_mpoly
 
-from symflex.algebra import Dispersion, Factored, KernelTable, Ring, degree_in
+from symflex.algebra import Dispersion, Factored, KernelTable, Ring, by_powers, degree_in
 from symflex.algebra.exponential_sum import power, spread, times
 from symflex.algebra.normal_form import NormalForm, with_image
-from symflex.algebra.ring import by_powers
 from symflex.print.forms.notation import Angle, angles_of, coefficient_name
 from symflex.transfer.expansion import compose_rational
 
@@ -236,8 +235,7 @@ class Invariants:
         """Replace the kernels of one angle; return also the power of two that was multiplied in."""
         coefficients, highest = in_exponentials(self.ring, work, angle)
         j = self.ring.generator(IMAGINARY)
-        k = [self._k(i, order) for order in range(4)]
-        powers = _Powers(self, k, mu, j)
+        powers = _Powers(self, [self._k(i, order) for order in range(4)], mu, j)
         total = self.ring.constant(0)
         for (a, b), part in coefficients.items():
             if part.is_zero():
@@ -321,8 +319,7 @@ def in_krylov_functions(
         return change, converted
     change, images = change.halved()
     normal = NormalForm(source, table)
-    halved = value.map_factors(source, lambda f: normal.reduce(source.replaced(f, images)))
-    converted = change.convert(halved)
+    converted = change.convert(value.map_factors(source, lambda f: normal.reduce(source.replaced(f, images))))
     return None if converted is None else (change, converted)
 
 

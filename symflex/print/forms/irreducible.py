@@ -76,7 +76,6 @@ def _expanded_ratio(product_found: Factored, factor: fmpz_mpoly, normal: NormalF
     if any(e < 0 for _, e in product_found.factors) or product_found.is_zero:
         return None
     product = normal.reduce((product_found / product_found.unit).expand())
-    whole = normal.reduce(factor)
-    ratio = whole / product_found.unit / Fraction(1)
+    ratio = normal.reduce(factor) / product_found.unit / Fraction(1)
     difference = ratio / product
     return difference.unit if difference.is_constant else None

@@ -125,8 +125,7 @@ def in_kernels(
     tf: TransferFunction, name: str, value: Factored, arranged: Arranged | None = None
 ) -> PrintedForm:
     """Return a form of a value over the transfer function's ring."""
-    used = tf.ratio.ring.used_in(f for f, _ in value.factors)
-    notation = notation_of(tf, used, Naming.of(tf))
+    notation = notation_of(tf, tf.ratio.ring.used_in(f for f, _ in value.factors), Naming.of(tf))
     printer = kernel_printer(tf, notation, arranged)
     sides = shortest_sides(printer, value, wavenumber_laws(tf))
     return PrintedForm(name, *sides, notation.lines, notation.laws, notation.closed)

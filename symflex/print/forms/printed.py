@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Final
 
 from symflex.algebra import LAPLACE, Factored
-from symflex.errors import Diagnostic, UsageError
+from symflex.errors import UsageError, refused
 from symflex.expressions import (
     FUNCTIONS,
     Bessel,
@@ -175,7 +175,7 @@ def require(tf: TransferFunction, form: str) -> None:
 def lacks(tf: TransferFunction, form: str, reason: str) -> UsageError:
     """Return the error that a transfer function has not a form, which hints at those it has."""
     hint = f"forms of {tf.name}: " + ", ".join(name for name in forms_of(tf) if name != form)
-    return UsageError(Diagnostic("SF902", f"{tf.name} has no {form} form: {reason}", None, hint))
+    return refused(f"{tf.name} has no {form} form: {reason}", hint)
 
 
 def counts_of(tf: TransferFunction) -> tuple[int | None, int | None]:

@@ -71,6 +71,5 @@ def _opened(placed: PlacedBlock) -> Expression:
     if placed.block.kernel_time:
         return Call("exp", negative(product_of([values[placed.block.kernel_time], Name(LAPLACE)])))
     ring = Ring((LAPLACE, *values))
-    generators = {name: Factored.generator(ring, name) for name in ring.names}
-    transfer = transfer_of(placed, generators)
+    transfer = transfer_of(placed, {name: Factored.generator(ring, name) for name in ring.names})
     return substitute(ProductPrinter(Arranger.plain(ring)).quotient(transfer), values)

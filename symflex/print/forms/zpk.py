@@ -79,8 +79,7 @@ def _factors(roots: Sequence[Root], digits: int) -> list[Expression]:
 
 def _decimal(value: arb, digits: int) -> Expression:
     """Return the nearest decimal of the given digits as an exact number."""
-    middle = value.mid()
-    mantissa, exponent = middle.man_exp()
+    mantissa, exponent = value.mid().man_exp()
     exact = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
     if not exact:
         return number(0)

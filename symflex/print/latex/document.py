@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from symflex.algebra import LAPLACE
-from symflex.errors import Diagnostic, UsageError
+from symflex.errors import refused
 from symflex.expressions import Expression
 from symflex.files.write import free_name
 from symflex.model import Model
@@ -145,7 +145,7 @@ def _blocks(
     for located in maps:
         if located.tf not in names:
             message = f"poles and zeros of '{located.tf[:64]}', which is not among the transfer functions"
-            raise UsageError(Diagnostic("SF902", message))
+            raise refused(message)
     if model.settable:
         values = f"Values are rounded to {VALUE_DIGITS} significant digits."
         if all(p.value is None for p in model.settable):

@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from typing import Final
 
-from symflex.errors import Diagnostic, UsageError
+from symflex.errors import refused
 
 COLUMNS_MM: Final = {"ieee": 88.5, "a4": 170.0}  # [mm]; IEEE journals: 252 points, A4: margins of 20 mm
 NARROWEST_MM: Final = 80.0  # narrowest column in which formulas of ten points need only one column
@@ -26,7 +26,7 @@ def column_width(said: float | str) -> float:
     match = _MILLIMETRES.fullmatch(said)
     if match is None:
         hint = f"{', '.join(COLUMNS_MM)} or millimetres such as 120mm"
-        raise UsageError(Diagnostic("SF902", f"'{said[:32]}' is not a width of a column", None, hint))
+        raise refused(f"'{said[:32]}' is not a width of a column", hint)
     return checked_width(float(match[1]))
 
 
@@ -38,8 +38,7 @@ def width_of(said: float | str | None) -> float | None:
 def checked_width(width_mm: float) -> float:
     """Return the width of a column [mm]; UsageError: SF902 when it is not between 80 and 1000 mm."""
     if not NARROWEST_MM <= width_mm <= WIDEST_MM:
-        message = f"a column is from {NARROWEST_MM:g} to {WIDEST_MM:g} mm wide, found {width_mm:g} mm"
-        raise UsageError(Diagnostic("SF902", message))
+        raise refused(f"a column is from {NARROWEST_MM:g} to {WIDEST_MM:g} mm wide, found {width_mm:g} mm")
     return width_mm
 
 

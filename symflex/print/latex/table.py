@@ -90,8 +90,7 @@ def root_table(
     Each number has the digits that the enclosure certifies, at most ``digits``, fewer in a narrow column.
     """
     entries = one_of_each_pair(roots_of(located, kind))
-    columns = columns_for(PAPER_COLUMNS, [e.root for e in entries])
-    return _table_of(entries, columns, digits, width_mm / EM_MM)
+    return _table_of(entries, columns_for(PAPER_COLUMNS, [e.root for e in entries]), digits, width_mm / EM_MM)
 
 
 def mode_table(

@@ -22,8 +22,7 @@ from inspect import Parameter, signature
 from pathlib import Path
 from typing import Any, Final
 
-from symflex.errors import Span, SpecError, SymflexError
-from symflex.errors.diagnostic import nearest
+from symflex.errors import Span, SpecError, SymflexError, nearest
 from symflex.model.reading import Reader
 from symflex.model.spec import ArrayValue, BooleanValue, KeyValue, NumberValue, TableValue, parse, read
 from symflex.report.claims.claim import Check, Claim, Publication

@@ -47,7 +47,7 @@ def search_right(
         return RightHalfPlane(tuple(known))
     if any(hole.right < pi / 2 for hole in side.holes):
         return RightHalfPlane(tuple(known), ACCUMULATING)
-    radius, unproved = _end(side, reached) if limit is None else (limit, "")
+    radius, unproved = last_on_the_right(side, reached) if limit is None else (limit, "")
     if radius <= reached:
         return _known_to(known, unproved, reached)
     # Roots mirror each other in the axis, and a path along it would meet them.
@@ -100,7 +100,7 @@ def _known_to(roots: Sequence[Root], unproved: str, reached: float) -> RightHalf
     return RightHalfPlane(tuple(roots), unproved, reached if unproved else 0.0)
 
 
-def _end(side: Side, reached: float) -> tuple[float, str]:
+def last_on_the_right(side: Side, reached: float = 0.0) -> tuple[float, str]:
     """Return how far roots are to be counted [rad/s], and why there may be others beyond."""
     start, radius = side.function.frequency_of(1.0), 0.0
     for factor, exponent in side.function.part.factors:

@@ -126,8 +126,7 @@ class KernelFunction:
         """Return the same, where the first of so many terms about 0 are exactly zero."""
         with precision(2 * FIRST_BITS):
             evaluator = self.bound.kernel_values()
-            s = acb_series([0, 1], terms)
-            value = evaluator.value(self.part**self.power, evaluator.at(s))
+            value = evaluator.value(self.part**self.power, evaluator.at(acb_series([0, 1], terms)))
             coefficients = value.coeffs() if isinstance(value, acb_series) else []
             first = next((c for c in enumerate(coefficients) if c[1] != 0), None)
             return None if first is None or first[1].contains(0) else first[0]

@@ -22,8 +22,7 @@ from symflex.algebra.exponentials import Exponentials
 from symflex.algebra.normal_form import NormalForm
 from symflex.balls import at_centre
 from symflex.errors import Diagnostic, ModelError
-from symflex.transfer import BoundTransferFunction
-from symflex.transfer.transfer_function import HiddenFactor
+from symflex.transfer import BoundTransferFunction, HiddenFactor
 
 EVEN = ("cosh", "cos", "exp")
 

@@ -145,8 +145,7 @@ def _order(rows: list[dict[int, nmod_poly]], field: TaylorField) -> int | None:
             target = rows[m]
             factor = target.pop(j).right_shift(order).mul_low(inverse, terms)
             for k, x in row.items():
-                known = target.get(k, field.constant(0))
-                value = (known - factor.mul_low(x, terms)).truncate(terms)
+                value = (target.get(k, field.constant(0)) - factor.mul_low(x, terms)).truncate(terms)
                 if value.is_zero():
                     target.pop(k, None)
                     columns[k].discard(m)

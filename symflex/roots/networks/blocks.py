@@ -61,8 +61,7 @@ def _degree_of_block(cramer: CramerEquations, rows: Sequence[int], columns: Sequ
     if _is_of_member(cramer, rows, columns):
         return 0
     if len(rows) == 1:
-        entry = cramer.entries[rows[0]][columns[0]]
-        return _degree(cramer, entry, is_alone=True)
+        return _degree(cramer, cramer.entries[rows[0]][columns[0]], is_alone=True)
     from scipy.optimize import linear_sum_assignment  # takes as long again, and few networks need it
 
     degrees = np.full((len(rows), len(columns)), NONE)

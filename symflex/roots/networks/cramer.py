@@ -17,8 +17,7 @@ from math import inf
 import numpy as np
 from flint import acb, arb
 
-from symflex.algebra import LAPLACE, Factored, terms_of
-from symflex.algebra.factored import least_common_multiple
+from symflex.algebra import LAPLACE, Factored, least_common_multiple, terms_of
 from symflex.balls import Eliminated, UndecidedError, current_bits, eliminate, precision, settled
 from symflex.budget import spend
 from symflex.equations import Equations
@@ -212,8 +211,7 @@ def _hadamard(rows: Sequence[Mapping[int, arb]], size: int) -> float:
     for _ in range(BALANCING):
         lengths = _lengths(i, logs + scale[j], size)
         share = np.exp(2 * (logs + scale[j] - lengths[i]))
-        taken = np.bincount(j, share, size)
-        scale -= 0.5 * np.log(np.maximum(taken, np.finfo(float).tiny))
+        scale -= 0.5 * np.log(np.maximum(np.bincount(j, share, size), np.finfo(float).tiny))
     lengths = _lengths(i, logs + scale[j], size)
     return float(lengths.sum() - scale.sum() + ROUNDING * size)
 

@@ -12,7 +12,6 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from math import pi
-from typing import TYPE_CHECKING
 
 from flint import arb
 
@@ -27,6 +26,7 @@ from symflex.roots.networks.cramer import CramerEquations, is_zero
 from symflex.roots.networks.network import Network, OtherNetworkError, network_of
 from symflex.roots.networks.parity import mirrored
 from symflex.roots.networks.search import Eigenvalue, EigenvalueSearch
+from symflex.roots.passivity import EnergyProof
 from symflex.roots.pole_zero_map import (
     COINCIDE,
     NONE_ON_AXIS,
@@ -41,9 +41,6 @@ from symflex.roots.polynomial_roots import in_order
 from symflex.roots.region import Band, Mode, Modes, Rectangle, Region
 from symflex.roots.root import TOUCHING, Root, count_modes, root_at_zero
 from symflex.transfer.equations_at import EssentialSingularityError
-
-if TYPE_CHECKING:
-    from symflex.roots.passivity import EnergyProof
 
 WITTRICK_WILLIAMS = "wittrick-williams"  # what stands in a certificate: the count of both
 WIDER = 1e-3  # how far beyond the limits of a band is searched, relative to them

@@ -198,8 +198,7 @@ def connected(discs: Sequence[Disc]) -> list[tuple[int, ...]]:
 
 def middle_of(group: Sequence[Disc]) -> acb:
     """Return the mean of the centres, exactly real for a group that is its own mirror image."""
-    total = sum((d.centre for d in group), acb(0))
-    middle = (total / len(group)).mid()
+    middle = (sum((d.centre for d in group), acb(0)) / len(group)).mid()
     return acb(middle.real) if is_symmetric(group) else middle
 
 
