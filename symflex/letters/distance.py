@@ -17,7 +17,7 @@ from decimal import ROUND_CEILING, Context
 from fractions import Fraction
 from functools import cache
 from itertools import combinations_with_replacement
-from math import inf, isfinite, isnan, log, nextafter
+from math import comb, factorial, inf, isfinite, isnan, log, nextafter, prod
 
 from flint import acb, acb_poly, arb, arb_poly
 
@@ -39,6 +39,7 @@ UNCHANGED = 1e-12  # change below which the radius of a ball is all there is
 LOST = 0.5  # displacement from which a root is no longer taken for the same one
 DECIBELS = 1.0  # difference in magnitude that statements are about: 12 %
 BESIDE = 1.05  # ratio of frequencies up to which a part of the band is joined to a resonance or to a gap
+HIGHEST, MOST_PRODUCTS = 7, 200_000  # orders in changes of letters, products of these in a second
 TRIES = 12  # radii about a root that are tried
 SHOWN = 6  # number of parts of a band, or of roots, that a sentence lists
 
@@ -181,24 +182,25 @@ def moved_over(whole: Sequence[Term], gone: Sequence[Term], root: acb, halves: S
     """
     own, without = ([(n, v * root**n, m) for n, v, m in terms] for terms in (whole, gone))
     every = range(len(halves))
-    slope, size = sum((c * n for n, c, _ in own), acb(0)), sum((abs(c) for _, c, _ in own), arb(0))
+    slope = sum((c * n for n, c, _ in own), acb(0))
     rates = [-sum((c * m[j] for _, c, m in own), acb(0)) / slope for j in every]
-    # What all terms have in common is taken out of them.
-    means = [sum((abs(c) * (m[j] + n * rates[j]) for n, c, m in own), acb(0)) / size for j in every]
+    # A power of each letter is taken out of all terms, so that it does not change the slope either.
+    means = [sum((c * n * (m[j] + n * rates[j]) for n, c, m in own), acb(0)) / slope for j in every]
+    cheap = (k for k in range(2, HIGHEST) if comb(len(halves) + k, k) * (30 + len(own)) < MOST_PRODUCTS)
+    order = max(cheap, default=1)
+    products = [p for k in range(order + 1) for p in combinations_with_replacement(every, k)]
+    sizes = [prod((halves[i] / (k - p.index(i)) for k, i in enumerate(p, 1)), start=arb(1)) for p in products]
 
     def most(terms: Sequence[Term]) -> arb_poly:
-        twice = [*combinations_with_replacement(every, 2)]
-        sizes = [arb(1), *halves, *(halves[i] * halves[j] / (1 + (i == j)) for i, j in twice), arb(1)]
-        parts = [[acb(0)] * (1 + max(n for n, *_ in own)) for _ in sizes]  # to second order, and the rest
+        parts = [[acb(0)] * (1 + max(n for n, *_ in own)) for _ in (*sizes, 1)]
         for n, c, m in terms:
             along = [m[j] + n * rates[j] - means[j] for j in every]
-            x = sum((abs(a) * half for a, half in zip(along, halves, strict=True)), arb(0))
-            factors = acb(1), *along, *(along[i] * along[j] for i, j in twice)
-            for part, factor in zip(parts, factors, strict=False):
-                part[n] += c * factor
-            parts[-1][n] += abs(c) * (x.exp() - 1 - x - x * x / 2)
-        about_one = [(acb_poly(p)(acb_poly([1, 1])), size) for p, size in zip(parts, sizes, strict=True)]
-        return sum((arb_poly([abs(c) * size for c in p]) for p, size in about_one), arb_poly([0]))
+            x = sum((abs(a) * half for a, half in zip(along, halves, strict=True)), arb(0)).abs_upper()
+            for part, product in zip(parts, products, strict=False):
+                part[n] += prod((along[i] for i in product), start=c)
+            parts[-1][n] += abs(c) * (x.exp() - sum((x**k / factorial(k) for k in range(order + 1)), arb(0)))
+        about_one = [(acb_poly(p)(acb_poly([1, 1])), x) for p, x in zip(parts, (*sizes, arb(1)), strict=True)]
+        return sum((arb_poly([abs(c) * x for c in p]) for p, x in about_one), arb_poly([0]))
 
     near, moved, reach = most(own), most(without), arb(0)
     for _ in range(TRIES):
