@@ -150,7 +150,7 @@ def conditions_of(tf: TransferFunction, of: str, polynomials: Iterable[Factor]) 
     _check(tf, signs, moving, found)
     stay = ", ".join(text + (f" ({n} times)" if n > 1 else "") for text, n in on_axis)
     said = f"those of {stay} on the imaginary axis, all others {LEFT}" if on_axis else f"all {LEFT}"
-    said = f"for no values all {LEFT}, as then" if is_never else said + " exactly when" * bool(found)
+    said = f"never all {LEFT}, which would require" if is_never else said + " exactly when" * bool(found)
     relations = tuple(relation for _, relation in found)
     return Conditions(tf.model, of, f"{of}: {said}", relations, tuple(on_axis), is_never)
 
