@@ -86,6 +86,8 @@ class DiscSide:
 
     def root(self, box: acb, count: int, digits: int) -> Root:
         """Return a root s [rad/s] to so many digits."""
+        if count == 1 and self.series.is_real and box.imag.contains(0):
+            box = acb(box.real)  # off the axis its image would be one root more than there are
         if count == 1:
             box = self.refined(box, digits)
         on_axis = self.is_even and count == 1 and bool(box.real.mid() == 0)

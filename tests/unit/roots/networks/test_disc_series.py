@@ -5,6 +5,7 @@ from math import pi
 import pytest
 from flint import acb, arb, ctx
 
+from symflex.roots.networks.disc_search import DiscSide
 from symflex.roots.networks.disc_series import DiscSeries, RootNearCircleError, points_needed
 
 BITS = 160
@@ -65,3 +66,11 @@ def test_all_roots_are_approximated_and_proved():
         1.5,
         2.5,
     ]
+
+
+def test_a_real_root_is_one_root_where_its_box_reaches_beyond_the_axis():
+    found = series(lambda s: s - 3, 5.0)
+    box = acb(arb(0.3, 1e-9), arb(1e-16, 1e-15))
+    side = DiscSide(found, lambda x, _: 10 * x - 3, 1, ((box, 1),), 0, 0.0, is_even=False)
+    assert side.found == found.count() == 1
+    assert [(r.is_real, bool(r.re.contains(3)), bool(r.im == 0)) for r in side.all_roots(10)] == [(True,) * 3]
