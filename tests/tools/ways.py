@@ -114,7 +114,11 @@ def _roots(found: PoleZeroMap) -> dict[str, Sequence[Root]]:
 
 def _alone(ones: Sequence[Root], others: Sequence[Root]) -> list[Root]:
     """Return the roots that are not in another list, as often."""
-    return [r for r in ones if not any(overlap(r, o) and r.multiplicity <= o.multiplicity for o in others)]
+
+    def times(root: Root, among: Sequence[Root]) -> int:
+        return sum(other.multiplicity for other in among if overlap(root, other))
+
+    return [root for root in ones if times(root, others) < times(root, ones)]
 
 
 def _shown(roots: Sequence[Root]) -> str:
