@@ -139,7 +139,7 @@ def _data(
     around = [min(sizes) / 30, max(sizes) * 3] if sizes else [0.1, 100.0]
     return {
         "title": model.title,
-        "parameters": [_parameter(p, names[p.name], p.name in moving) for p in used],
+        "parameters": [_parameter(p, names[p.name], p.name in moving and not p.is_solved_with) for p in used],
         "functions": functions,
         "band": [float(f) for f in model.analysis.band or ()] or around,
         "specification": _pieces(model, [p.name for p in used]),

@@ -20,6 +20,7 @@ from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.expressions import Sum, names_among
 from symflex.loops.gain_functions import GainFunctions
 from symflex.model import Model, ModelParameter
+from symflex.model.settings import check_free
 from symflex.transfer import BoundTransferFunction, Given, TransferFunction, bind, bind_polynomials
 from symflex.transfer.bind import values_for
 
@@ -168,6 +169,7 @@ def pick_gain(parameters: Sequence[ModelParameter], name: str) -> ModelParameter
         )
         message = f"there is no parameter '{name[:64]}'" if name else "name the gain of the loop: --gain K"
         raise UsageError(Diagnostic("SF902", message, None, hint))
+    check_free(known[name])
     return known[name]
 
 

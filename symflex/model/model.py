@@ -63,6 +63,7 @@ class ModelParameter:
     scale: ExactValue = ONE  # what one of that unit is in the unit of ``value``
     limits: tuple[ExactValue, ExactValue] | None = None  # its ``range``, like ``value``
     spread: Fraction | ExactValue | None = None  # to either side of the value, or as a share of it
+    is_solved_with: bool = False  # a number at rest was solved for with its value, or is its value
 
     def __repr__(self) -> str:
         value, unit = self.as_written()
@@ -199,6 +200,7 @@ class OperatingPoint:
     # Of Lagrange's equations the coordinates, and in their order the matrices of mass, damping and stiffness.
     coordinates: tuple[str, ...] = ()
     matrices: tuple[tuple[tuple[Expression, ...], ...], ...] = ()
+    solved_with: frozenset[str] = frozenset()  # names in what was solved by value
 
 
 @dataclass(frozen=True, slots=True)

@@ -203,6 +203,7 @@ class _AboutRest:
         self.reader, self.rest, self.inputs, self.constants = reader, rest, inputs, constants
         self.signed = signed
         self.by_value: dict[str, Fraction] = {}
+        self.solved_with: set[str] = set()
         self.bare: set[Expression] = set()  # names that occur without a derivative
         self.slopes: list[dict[str, Expression]] = []  # of each equation, by what varies
         self.values = dict(rest.values)
@@ -364,9 +365,8 @@ class _AboutRest:
         )
         linear = tuple(e for e in made.values() if e is not None)
         values = tuple((n, v) for n, v in self.values.items() if n.rstrip("'") in self.seen)
-        return OperatingPoint(
-            values, tuple(equations.values()), linear, coordinates, matrices if coordinates else ()
-        )
+        own = coordinates, matrices if coordinates else (), frozenset(self.solved_with)
+        return OperatingPoint(values, tuple(equations.values()), linear, *own)
 
     def check_names(self, rest: AtRest) -> None:
         """Note values of what occurs in no equation."""
@@ -410,6 +410,11 @@ class _AboutRest:
             wanted = [p for p in wanted if p not in together]
             values = self._solved_by_value([r for r, _ in rows], together)
             self.by_value = dict(zip(together, values, strict=False))
+            unread = [r for r, _ in rows]
+            while unread:
+                names = {n.name for e in unread for n in nodes(e) if isinstance(n, Name)} - self.solved_with
+                self.solved_with |= names
+                unread = [e for n in names if (e := self.constants.get(n)) is not None]
             if not values:
                 self._note_left(*rows[0], ", ".join(together))
         for rest, equation in left:

@@ -171,13 +171,14 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     draft = with_imaginary_unit(reader, with_written_delays(with_branches(draft, named), named))
     broken = broken_names(sections, draft) | twins
     model, turned = _finish(reader, draft, broken)
-    later, hints = Reader(), Reader()
+    later, hints, solved_with = Reader(), Reader(), point.solved_with if point else ()
     model = replace(
         model,
         outputs=_in_radians(model, () if point is None else point.coordinates),
         title=reader.plain(spec.root, "title", "the specification"),
         source=reader.plain(spec.root, "source", "the specification"),
         operating_point=point,
+        parameters=tuple(replace(p, is_solved_with=p.name in solved_with) for p in model.parameters),
         analysis=read_analysis(reader, sections["analysis"]),
         figures=read_figures(later, sections["figures"], model),
         drawing=read_drawing(hints, sections["drawing"], model),

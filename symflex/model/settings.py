@@ -13,7 +13,7 @@ from math import isfinite
 from numbers import Rational
 from typing import TYPE_CHECKING
 
-from symflex.errors import Diagnostic, Source, Span, Text, UsageError, nearest, refused
+from symflex.errors import Diagnostic, ModelError, Source, Span, Text, UsageError, nearest, refused
 from symflex.expressions import substitute
 from symflex.model.declarations import DeclaredParameter, one_of, without_sign
 from symflex.model.model import ExactValue, Model, ModelParameter, rewritten
@@ -103,6 +103,14 @@ def _settled(reader: Reader, parameter: DeclaredParameter, given: Setting) -> De
     return replace(parameter, quantity=quantity, has_unit=bool(quantity.unit) or parameter.has_unit)
 
 
+def check_free(parameter: ModelParameter) -> None:
+    """Refuse to vary a parameter with which a number at rest was solved for; SF801."""
+    if parameter.is_solved_with:
+        message = f"a value at rest was solved for with '{parameter.name}', and would not follow it"
+        hint = f"--set {parameter.name}=VALUE solves anew, as does load(FILE, values=...) in Python"
+        raise ModelError(Diagnostic("SF801", message, parameter.span, hint))
+
+
 def spread_box(
     parameters: Iterable[ModelParameter], share: Fraction | None = None
 ) -> dict[str, tuple[Fraction, Fraction]]:
@@ -123,6 +131,7 @@ def spread_box(
         # PI_NEARLY has 30 digits.
         around = (abs(value) + half) / 10**28 if p.value.pi_power or own.pi_power else 0
         if half:
+            check_free(p)
             box[p.name] = (value - half - around, value + half + around)
     if not box:
         hint = 'give one for all of them: --spread 10%, or declare m = { value = ..., spread = "10 %" }'

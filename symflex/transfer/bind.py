@@ -29,7 +29,7 @@ from symflex.expressions import format_expression, names
 from symflex.model import ExactValue, Model, ModelParameter, with_numbers
 from symflex.model.along import COORDINATE
 from symflex.model.declarations import assuming
-from symflex.model.settings import exact_number
+from symflex.model.settings import check_free, exact_number
 from symflex.quantities import parse_quantity, unit_of
 from symflex.transfer.against_equations import compare
 from symflex.transfer.agreement import agreement
@@ -62,6 +62,8 @@ def read_values(
     values = [(p.name, _read_value(p, given[p.name]) if p.name in given else p.value) for p in parameters]
     missing = []
     for parameter, (_, value) in zip(parameters, values, strict=True):
+        if value != parameter.value:
+            check_free(parameter)
         if value is None:
             missing.append(parameter)
         # Zero is let through: leaving an effect out is what binding is often for.

@@ -344,7 +344,8 @@ def sensitivities(
     given = dict(bound.values)
     values = {p.name: given.get(p.name, p.value) for p in model.parameters}
     real = {name: value for name, value in values.items() if value is not None}
-    chosen = [p for p in model.settable if p.name in real and (not names or p.name in names)]
+    left = [p.name for p in model.settable if not p.is_solved_with]
+    chosen = [p for p in model.settable if p.name in real and p.name in (names or left)]
     pair = (bound.source.output.name, bound.source.input.name)
     if (
         not bound.is_reduced

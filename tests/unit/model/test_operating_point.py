@@ -302,6 +302,18 @@ def test_equations_without_a_linear_one_are_refused(equation):
     assert refusal(loads, text) == f"SpecError {REFUSED[equation]}"
 
 
+def test_what_was_solved_for_by_value_is_solved_anew_for_other_values():
+    text = _text(*EQUATIONS["by value"])
+    model = loads(text)
+    held = model.transfer_function("O_theta", "tau")
+    assert refusal(model.stability, over="k") == refusal(model.stability, spread=0.1) == "ModelError SF801"
+    assert refusal(held.bind, k=0.3) == "ModelError SF801"
+    assert len(held.bind(J=0.03).poles()) == 2
+    q = mpmath.findroot(lambda q: 0.3 * q - 0.6 * mpmath.sin(q), 1.9)
+    pole, _ = loads(text, values={"k": 0.3}).transfer_function("O_theta", "tau").bind().poles()
+    assert abs(complex(pole) ** 2 + (0.3 - 0.6 * mpmath.cos(q)) / 0.02) < 1e-9
+
+
 @pytest.mark.parametrize("equation", ["m*x'' + k*sin(x) = u", "m*x'' + k*x*x = u", "m*x'' + k*x + 3 = u"])
 def test_equations_that_are_not_linear_need_a_point(equation):
     text = _text("x", [equation], {}, [], "u", {"m": 2, "k": 3}).partition("[operating_point]")[0]
