@@ -449,10 +449,12 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
     const stability = (state, f) => {
         const line = one(".stability"), known = isSame(values, declared) || f.fixed ? f.verdict : null;
         const isMarginal = !f.infinite && state.certified.poles && state.poles.every((p) => (isOrigin(p) && !p.radius) || -p.re > p.radius);
-        const word = state.stability !== "unknown" ? state.stability : known?.word ?? (isMarginal ? "marginal" : "unknown");
-        const right = Math.max(...state.poles.map((p) => p.re)), sentence = known && state.stability === "unknown" ? `${known.sentence}, proved at the declared values`
+        const isShown = f.hides && !state.isPassive && state.stability === "stable", own = isShown ? "unknown" : state.stability;
+        const word = own !== "unknown" ? own : known?.word ?? (isMarginal && !f.hides ? "marginal" : "unknown");
+        const right = Math.max(...state.poles.map((p) => p.re)), sentence = known && own === "unknown" ? `${known.sentence}, proved at the declared values`
             : word === "marginal" ? "marginal, proved at these values: poles at s = 0, all others in the left half-plane"
             : word !== "unknown" ? `${word}, proved at these values`
+            : isShown ? "all poles shown lie in the left half-plane, proved; hidden poles, which cancel, may not"
             : state.isPassive ? "no pole lies in the right half-plane: nothing supplies energy, whatever the positive values"
             : `neither stability nor instability is proved here${state.poles.length ? `: the rightmost poles shown have Re s = ${short(right, 3)} rad/s` : ""}`;
         for (const kind of ["stable", "unstable"]) line.classList.toggle(kind, word === kind);

@@ -31,6 +31,7 @@ from symflex.codegen.program.evaluate import nearest_double
 from symflex.drawing import drawing_of, render_drawing
 from symflex.errors import SymflexError
 from symflex.figures.files import inline_svg
+from symflex.letters.routh import Signs
 from symflex.live.tape import MODES, tape_of
 from symflex.model import Model, ModelParameter
 from symflex.model.spec import TableValue, parse
@@ -170,6 +171,10 @@ def _ends(value: float | None, p: ModelParameter) -> tuple[float, float]:
 def _function(member: Member, located: PoleZeroMap | str) -> dict[str, Any]:
     tf, accuracy = member.tf, member.verification.text()
     data = {"name": tf.name, "unit": tf.unit or "", "fixed": not is_closed(tf), "accuracy": accuracy}
+    if tf.is_reduced:
+        sign, rows = Signs.of(tf).of_polynomial, [tf.ring.coefficients(h.polynomial) for h in tf.hidden]
+        # Up to the second degree, coefficients of one sign keep hidden poles out of the right half-plane.
+        data["hides"] = any(r[3:] or {sign(c) for c in r if not c.is_zero()} not in ({1}, {-1}) for r in rows)
     if isinstance(located, str):
         return {**data, "why": located, "poles": [], "zeros": [], "infinite": not tf.is_rational}
     data |= {"why": "", "infinite": located.is_infinite, "certified": located.certificate.certified}

@@ -146,6 +146,15 @@ def test_the_step_of_an_oscillator_is_that_of_textbooks_and_its_poles_are_proved
         assert y == pytest.approx((1 - decay) / 80, rel=1e-3)
 
 
+def test_a_model_with_a_hidden_pole_that_may_be_unstable_is_not_called_stable(browser, tmp_path):
+    for sign, classes in (("-", ["stability unstable", "stability"]), ("+", ["stability stable"] * 2)):
+        body = "symflex = 1\nparameters = { a = 1, b = 9, K = 3 }\ninputs.r = {}\noutputs.X = 'x'"
+        loop = f"signals.x = '(s {sign} a)/(s + b)/(s {sign} a)*K*(r - x)'"
+        opened(browser, tmp_path, pipeline.loads(f"{body}\n{loop}"))
+        said = "one('.stability').className"
+        assert browser.run(ACT % f"const at = {said}; await put(field, 4); return [at, {said}];") == classes
+
+
 def test_values_are_undone_linked_and_copied(browser, tmp_path):
     file = opened(browser, tmp_path, pipeline.loads(BODY))
     ends = "await put(slider, 0); const low = symflex.parameters.k.value; await put(slider, 400);"
