@@ -26,7 +26,7 @@ from symflex.roots.functions.exponential_values import ExponentialValues, Valued
 from symflex.roots.functions.kernel_function import SINGLE, TWINS
 from symflex.roots.pole_zero_map import WITHOUT_END
 from symflex.transfer import BoundTransferFunction, coefficients_in_s
-from symflex.transfer.enclose_kernels import KernelValues
+from symflex.transfer.enclose_kernels import KernelValues, square_root
 
 BITS = 64  # precision of bounds, which need few digits
 SECTORS = 48  # into which the right angle is cut: less than two degrees each
@@ -37,7 +37,6 @@ LINEAR, QUADRATIC = 1, 2
 NO_FORMULA = "no bound on the poles is known without a formula for the wavenumbers"
 NOT_OUTWEIGHED = "no bound on the poles is known, as no term outweighs the others at high frequencies"
 TOO_MANY = "no bound on the poles is known for so many exponentials"
-TWO_WAVENUMBERS = "no bound on the poles is known when a part has two wavenumbers"
 ADVANCED = "a delayed term has the highest power of s, so poles in the right half-plane have no bound"
 NEUTRAL = "delayed terms share the highest power of s and none outweighs the others, so poles have no bound"
 DELAY_LEADS = f"a delayed term outweighs all others of the highest power of s, so {WITHOUT_END}"
@@ -245,8 +244,6 @@ def _sum_far_out(
     table = bound.kernels
     if arguments_of(table) is None:
         return NO_FORMULA
-    if any(law.kind not in (*SINGLE, "exponential") for law in table.dispersions):
-        return TWO_WAVENUMBERS
     summed = sums_of(bound.ratio.ring, polynomials, table)
     if summed is None:
         return TOO_MANY
@@ -312,23 +309,14 @@ class _SumFarOut:
         for law in self.laws:
             if not law.wavenumbers:
                 continue
-            order, name = SINGLE[law.kind], law.wavenumbers[0]
-            if (wave := _wave(self.kernels, law, radius)) is not None:
+            name = law.wavenumbers[0]
+            if law.kind in SINGLE and (wave := _wave(self.kernels, law, radius)) is not None:
                 named[name], to_and_fro[name] = wave[0], wave[1:]
                 continue
-            leading = _at_infinity(self.kernels, law.characteristic[0], radius)
-            if leading is None:
+            roots = (_pair if law.kind == "pair" else _single)(self.kernels, law, radius)
+            if roots is None:
                 return None
-            power, value = leading
-            value = -value if law.kind == "wave" else value / 4
-            # Any branch serves, as long as it is the same everywhere.
-            start = acb(0)
-            if not value.real > 0:
-                value, start = -value, acb(0, arb.pi() / order)
-            if not value.real > 0:
-                return None
-            unit = (value.log() / order + start).exp()
-            named[law.wavenumbers[0]] = _Power(Fraction(power, order), unit)
+            named.update(zip(law.wavenumbers, roots, strict=True))
         arguments = []
         lengths = map(at_centre, self.sums.lengths)
         decays: dict[int, acb] = {}  # of delayed terms, such as what a belt loses on the way
@@ -397,6 +385,44 @@ def _at_infinity(kernels: KernelValues, value: Factored, radius: float) -> tuple
         power += degree_in(factor, 0) * exponent
         total = total * series_sum**exponent
     return power, total
+
+
+def _single(kernels: KernelValues, law: Dispersion, radius: float) -> list[_Power] | None:
+    """Return a wavenumber beyond a radius; any branch serves, as long as it is the same everywhere."""
+    leading = _at_infinity(kernels, law.characteristic[0], radius)
+    if leading is None:
+        return None
+    order, (power, value) = SINGLE[law.kind], leading
+    value = -value if law.kind == "wave" else value / 4
+    start = acb(0)
+    if not value.real > 0:
+        value, start = -value, acb(0, arb.pi() / order)
+    if not value.real > 0:
+        return None
+    return [_Power(Fraction(power, order), (value.log() / order + start).exp())]
+
+
+def _pair(kernels: KernelValues, law: Dispersion, radius: float) -> list[_Power] | None:
+    """Return two wavenumbers beyond a radius, whose squares are ``-c_2/2 +- sqrt(c_2^2 - 4 c_0)/2``."""
+    known = (_at_infinity(kernels, x, radius) for x in (*law.characteristic[::2], law.discriminant))
+    last, middle, under = known
+    if last is None or middle is None or under is None:
+        return None
+    half = square_root(under[1] / 4)
+    assert isinstance(half, acb)
+    parts = (Fraction(middle[0]), -middle[1] / 2), (Fraction(under[0], 2), half)
+    power = max(p for p, _ in parts)
+    # What has a lower power of s lies within a disc, relative to the other.
+    errors = (arb(0, arb(radius) ** ball(p - power)) for p, _ in parts)
+    one, two = (x if p == power else x * acb(e, e) for (p, x), e in zip(parts, errors, strict=True))
+    larger = max(one + two, one - two, key=lambda x: x.abs_lower())
+    roots = []
+    for p, square in ((power, larger), (last[0] - power, acb(last[1] / larger))):
+        root = square_root(square)
+        if not isinstance(root, acb) or not root.is_finite() or root.contains(0):
+            return None
+        roots.append(_Power(p / 2, root))
+    return roots
 
 
 def _wave(kernels: KernelValues, law: Dispersion, radius: float) -> tuple[_Power, acb, acb] | None:

@@ -9,7 +9,7 @@ import pytest
 from flint import acb, arb
 
 from symflex import pipeline
-from symflex.balls import precision
+from symflex.balls import ball, precision
 from symflex.roots.distributed.far_out import (
     ADVANCED,
     DELAY_LEADS,
@@ -19,9 +19,9 @@ from symflex.roots.distributed.far_out import (
     NO_FORMULA,
     NO_LOSS,
     SECTORS,
-    TWO_WAVENUMBERS,
     _at_infinity,
     _dominant,
+    _pair,
     _Power,
     _turned,
     right_tail,
@@ -70,6 +70,7 @@ inputs.F = {{ force = "x" }}
 outputs.X = "x"
 """
 BEAM = "E = 1, I = 1, rho = 1, A = 1"
+TIMOSHENKO = ', theory = "timoshenko", G = 1, kappa = 0.5'
 
 
 def test_where_no_term_outweighs_the_others_it_is_said_why():
@@ -82,12 +83,7 @@ def test_where_no_term_outweighs_the_others_it_is_said_why():
         (lambda: delayed("3*D + E"), EVERY_DELAYED),
         (lambda: bound(ELEMENT.format(kind="rod", values="E = 1, rho = 1, A = 1")), NO_LOSS),
         (lambda: bound(ELEMENT.format(kind="beam", values=BEAM)), NO_LOSS),
-        (
-            lambda: bound(
-                ELEMENT.format(kind="beam", values=BEAM + ', theory = "timoshenko", G = 1, kappa = 1')
-            ),
-            TWO_WAVENUMBERS,
-        ),
+        (lambda: bound(ELEMENT.format(kind="beam", values=BEAM + TIMOSHENKO)), NO_LOSS),
     ]:
         found = tail(function())
         assert found == reason, function
@@ -100,6 +96,22 @@ def test_losses_in_the_material_end_the_poles():
         # From 1/eta on the loss is more than the stiffness, and waves decay within a wavelength.
         assert isinstance(found, float), kind
         assert 1 / eta < found < 10 / eta, kind
+
+
+def test_two_wavenumbers_of_a_damped_timoshenko_beam_are_enclosed_beyond_a_radius():
+    function = bound(ELEMENT.format(kind="beam", values=BEAM + TIMOSHENKO + ', eta = "0.01 s"'))
+    assert 100 < tail(function, 1.0) < 2000
+    (law,) = function.kernels.dispersions
+    with precision(64):
+        pair = _pair(function.kernel_values(), law, 2000.0)
+        for radius, angle in product([2001, 1e4, 1e7], [0, 0.4, 1.5, -1.2, 3]):
+            s = mpmath.rect(radius, angle)
+            bending, shear = s**2 / (1 + s / 100), 2 * s**2 / (1 + s / 100)  # rho s^2/E, rho s^2/(kappa G)
+            middle, product_of_roots = (bending + shear) / 2, bending * (shear + 1)
+            root = mpmath.sqrt(middle**2 - product_of_roots)
+            for square in (middle + root, middle - root):
+                powers = [(acb(s.real, s.imag) ** ball(p.power) * p.unit) ** 2 for p in pair]
+                assert any(x.contains(acb(square.real, square.imag)) for x in powers), (radius, angle)
 
 
 def test_a_sector_holds_its_directions_and_no_others():
