@@ -29,12 +29,14 @@ from symflex.loops.loop_function import LoopFunction
 from symflex.loops.stability_map import Crossing, PoleCount
 from symflex.loops.two_unknowns import GainTree, PartsAlong, find_axis_points, left
 from symflex.roots.counting.winding import RootOnAxisError, RootOnPathError
+from symflex.roots.degenerate import DegeneratePoints, degenerate_points
 from symflex.roots.distributed.far_out import ADVANCED, DELAY_LEADS, NEUTRAL, right_tail
+from symflex.roots.distributed.right_half_plane import search_right
 from symflex.roots.distributed.side import Side
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.functions.simplified import without_squares
 from symflex.roots.passivity import EnergyProof, energy_proof
-from symflex.roots.pole_zero_map import count_right
+from symflex.roots.pole_zero_map import count_right, is_right
 from symflex.roots.root import count_roots, exact_fraction
 from symflex.roots.sheets import on_sheet
 from symflex.transfer import BoundTransferFunction
@@ -251,8 +253,12 @@ class DistributedFactors(AxisSearch):
             return PoleCount(count_right(roots), zeros)
         if self.energy.rests:
             return PoleCount(0, zeros)
+        meeting = self.loop and [p for p in degenerate_points(self.bound) if is_right(p)]
         for circle in [self._circle] if self._circle else self._circles:
             try:
+                if self.loop and meeting:
+                    points = DegeneratePoints(self.loop.bound_at(gain), meeting)
+                    return PoleCount(_right_but(points, side, circle), zeros)
                 return PoleCount(side.count_right(log(circle)), zeros)
             except RootOnAxisError:
                 break
@@ -391,3 +397,12 @@ class DistributedFactors(AxisSearch):
                 self.leave_open(omega)
         crossings += [Crossing(gain, (omega,), is_open=True, change=None) for omega, gain in points.undecided]
         return crossings + [Crossing(gain, (omega,), change=None) for omega, gain in points.proved]
+
+
+def _right_but(points: DegeneratePoints, side: Side, circle: float) -> int:
+    """Return the poles on the right up to a circle, without roots of the formula where wavenumbers meet."""
+    found = search_right(side, (), 0.0, circle)
+    poles = [root for root in found.roots if not points.is_spurious(root, is_hidden=False)]
+    if reason := found.unproved or points.unproved:
+        raise UncertifiedError(Diagnostic("SF802", reason))
+    return count_right(poles)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 
+import mpmath
 import numpy as np
 import pytest
 
@@ -375,3 +376,48 @@ supply = { type = "voltage_source", at = "u", v = "C*(r - st)" }
 """).stability("kp", (100, 900))
     assert found.certified
     assert counts(found) == [(0, 0)]
+
+
+@pytest.mark.slow
+def test_where_wavenumbers_meet_in_the_right_half_plane_a_tensioned_beam_has_no_pole():
+    # They meet at s = N/(2 sqrt(rho A E I (1 + eta s))), 11.5 rad/s, where the formula is 0/0. The loop of
+    # c/K > tau is passive at K = 50; from where Im K(j omega) = 0 on, two poles are on the right.
+    model = symflex.loads("""symflex = 1
+parameters = { K = 50 }
+[elements.arm]
+type = "beam"
+between = ["ground", "tip"]
+eta = 1e-4
+E = 7e10
+I = 1e-9
+A = 1e-4
+rho = 2700
+l = 0.5
+N = 100
+[elements.drive]
+type = "force_source"
+at = "tip"
+f = "u"
+[signals]
+u = "-(K + 2*s)/(0.001*s + 1)*tip"
+[inputs]
+F = { force = "tip" }
+[outputs]
+X = "tip"
+""")
+
+    def gain(omega):
+        s = mpmath.mpc(0, omega)
+        bending = 70 * (1 + s / 10**4)
+        roots = mpmath.polyroots([bending, 0, -100, 0, 0.27 * s**2], extraprec=200)
+        tip = [mpmath.exp(r / 2) for r in roots]
+        ends = [[r**2 * e for r, e in zip(roots, tip, strict=True)]]  # no moment, and a unit force
+        ends += [[(100 * r - bending * r**3) * e for r, e in zip(roots, tip, strict=True)]]
+        shares = mpmath.lu_solve(mpmath.matrix([[1] * 4, roots, *ends]), mpmath.matrix([0, 0, 0, 1]))
+        return -(1 + s / 1000) / mpmath.fdot(tip, shares) - 2 * s
+
+    omega = mpmath.findroot(lambda w: gain(w).imag, 346)
+    found = model.stability("K")
+    assert counts(found) == [(0, 0), (2, 0)]
+    (boundary,) = found.proved.boundaries
+    assert float(boundary.gain.mid()) == pytest.approx(float(gain(omega).real), rel=1e-9)
