@@ -3,6 +3,7 @@
 import re
 from itertools import combinations
 
+from matplotlib.axes import Axes
 from matplotlib.text import Annotation, Text
 
 TOUCH = 0.8
@@ -16,7 +17,7 @@ def drawn_texts(figure):
     figure.draw_without_rendering()
     renderer = figure.canvas.get_renderer()
     unseen = set()
-    for axes in figure.axes:
+    for axes in figure.findobj(Axes):  # insets, too
         for axis in (axes.xaxis, axes.yaxis):
             low, high = sorted(axis.get_view_interval())
             slack = 1e-9 * (high - low)
