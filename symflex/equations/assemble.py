@@ -21,7 +21,6 @@ from symflex.algebra import (
     Radicals,
     Ring,
     common_denominator,
-    least_common_multiple,
     random_point,
     residue,
 )
@@ -31,6 +30,7 @@ from symflex.equations.equations import ConstantFunction, Continuum, Equations, 
 from symflex.equations.evaluate import (
     ExactEvaluator,
     Opener,
+    cancelled_poles,
     transfer_of,
     without_squares,
     written_denominator,
@@ -204,7 +204,7 @@ class _Assembly:
     lines: dict[str, tuple[LineElement, ElementUse]] = field(default_factory=dict)
     # Per line element or field, the points within at which it is cut.
     cuts: dict[str, list[Cut]] = field(default_factory=dict)
-    # Of blocks, and of definitions that have any, before anything cancels.
+    # Denominators in s of blocks and definitions as they are written, before anything cancels.
     poles: dict[str, Factored] = field(default_factory=dict)
 
     def survey(self, *, is_nameless: bool, is_cut: bool, is_followed: bool) -> Distributed | None:
@@ -647,9 +647,12 @@ class _Assembly:
         except SymflexError as error:
             self.problems.extend(error.diagnostics)
             return
-        row, cancelled = LinearForm.of(*given) + form, self._cancelled(expression, form, evaluator)
-        if not cancelled.is_one:  # only of a polynomial row is it a factor: it may divide what is left, too
-            row = row * common_denominator(self.ring, form.coefficients) * cancelled
+        below = common_denominator(self.ring, form.coefficients)
+        cancelled = cancelled_poles(expression, below, evaluator, self.poles)
+        # What is left below a row may have the same factors, which would cancel these once more.
+        row = (LinearForm.of(*given) + form) * (
+            cancelled * below.filter(lambda f: cancelled.exponent_of(f) > 0)
+        )
         self.unknowns.append(variable)
         self.rows.append(EquationRow(variable, row, role))
 
@@ -661,13 +664,8 @@ class _Assembly:
             return None
         # A filter in an output is the output's own: as an unknown it would be a mode of all the others.
         below = common_denominator(self.ring, form.coefficients)
-        divisor = below * self._cancelled(expression, form, evaluator)
+        divisor = below * cancelled_poles(expression, below, evaluator, self.poles)
         return OutputRow(name, form * divisor, divisor)
-
-    def _cancelled(self, expression: Expression, form: LinearForm, evaluator: ExactEvaluator) -> Factored:
-        """Return the poles that cancelled within an expression: they stay modes of the model."""
-        left = common_denominator(self.ring, form.coefficients)
-        return least_common_multiple(left, (written_denominator(expression, evaluator, self.poles),)) / left
 
 
 def _side_by_side(left: LinearForm, right: LinearForm) -> LinearForm:

@@ -407,13 +407,18 @@ def written_denominator(
     return one
 
 
+def cancelled_poles(
+    expression: Expression, below: Factored, evaluator: ExactEvaluator, poles: Mapping[str, Factored]
+) -> Factored:
+    """Return the poles that cancelled above what is left ``below`` an expression: they stay modes."""
+    return least_common_multiple(below, (written_denominator(expression, evaluator, poles),)) / below
+
+
 def _inverted(expression: Expression, evaluator: ExactEvaluator, poles: Mapping[str, Factored]) -> Factored:
     """Return the denominator in s of an expression's inverse: its zeros, and the poles that cancel in it."""
     value = evaluator.constant(expression)
-    left = value.denominator()
-    written = written_denominator(expression, evaluator, poles)
-    cancelled = least_common_multiple(left, (written,)) / left
-    return _in_s(value.numerator(), evaluator.varying) * cancelled
+    zeros = _in_s(value.numerator(), evaluator.varying)
+    return zeros * cancelled_poles(expression, value.denominator(), evaluator, poles)
 
 
 def _in_s(value: Factored, varying: Collection[str] = ()) -> Factored:

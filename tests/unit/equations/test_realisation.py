@@ -1,6 +1,8 @@
 from math import prod
 
 from symflex import pipeline
+from symflex.roots import Modes
+from symflex.roots.locate import locate
 
 BLOCKS = """
 C = { type = "tf", num = "s - 1", den = "s + 1" }
@@ -71,6 +73,22 @@ def test_of_a_double_pole_that_cancels_once_one_is_hidden_and_one_is_moved():
         tf, found = hidden(signals=signals, definitions=definitions)
         assert tf.order == (0, 2), signals
         assert ("s - 1", 1) in found, signals
+
+
+def test_what_cancels_beside_a_value_along_a_beam_leaves_its_other_modes():
+    # A free beam has four poles at 0: two for each transfer function, and two that it does not show.
+    for rest in ("", "/(s + 3)"):
+        text = f"""symflex = 1
+signals.y = "(s + 2)/(s + 2){rest}*beam.y(0.7)"
+elements.beam = {{ type = "beam", between = ["a", "b"], E = 3, I = 2, A = 1, rho = 5, l = 2 }}
+inputs.F = {{ force = "a" }}
+outputs.Y = "y"
+"""
+        model = pipeline.loads(text)
+        (bound,) = pipeline.derive_bound(model, model.transfer_functions)
+        found = [h.root for h in locate(bound, Modes(2)).hidden]
+        assert sorted((float(r.re.mid()), r.multiplicity) for r in found) == [(-2, 1), (0, 2)], rest
+        assert all(r.im == 0 for r in found), rest
 
 
 def test_a_pole_cancelled_within_a_definition_is_hidden():
