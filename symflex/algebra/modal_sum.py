@@ -64,10 +64,11 @@ def mode_values(roots: Any, length: Any) -> tuple[Any, Any]:  # noqa: ANN401
     """Return exponents of all roots at a length, and x^k/chi'(x) per root: numbers, arrays or balls."""
     powers = []
     for i, x in enumerate(roots):
-        own: list[Any] = [1.0]
+        share: Any = 1.0
         for j, other in enumerate(roots):
             if j != i:  # one by one, as a product of wide balls may contain 0 where none of them does
-                own[0] = own[0] / (x - other)
+                share = share / (x - other)
+        own = [share]
         for _ in range(len(roots) - 1):
             own.append(own[-1] * x)
         powers.append(own)

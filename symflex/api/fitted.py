@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -231,8 +231,17 @@ def fit(
             responses.append(one)
         else:
             responses += read_measurement(one, columns, estimate, axis)
-    tfs = [tf] if isinstance(tf, str) else list(tf)
-    asked = FitOptions(base=base, tfs=tfs, modes=modes, start=start, criterion=criterion, slope=slope)
-    asked = replace(asked, is_gain_free=gain, is_delay_free=delay, allow_outside=allow_outside)
-    asked = replace(asked, is_lag_free=bool(lag), is_lag_signed=lag == "signed")
+    asked = FitOptions(
+        base=base,
+        tfs=[tf] if isinstance(tf, str) else list(tf),
+        modes=modes,
+        start=start,
+        criterion=criterion,
+        is_gain_free=gain,
+        is_lag_free=bool(lag),
+        is_lag_signed=lag == "signed",
+        is_delay_free=delay,
+        slope=slope,
+        allow_outside=allow_outside,
+    )
     return Fit(fitted(prepared(responses, band, averages, window), asked))

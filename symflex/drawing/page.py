@@ -60,13 +60,19 @@ def figure_of(drawing: Drawing) -> Figure:
             if stroke.points[0] == stroke.points[-1]:
                 codes[-1] = Path.CLOSEPOLY
             is_first = j == 0 and item.kind in TITLED
-            figure.add_artist(PathPatch(
-                Path(points, codes), gid=f"{item.kind}.{item.name}.{i}" if is_first else None,
-                transform=figure.transFigure, edgecolor=BLACK, facecolor=stroke.fill or "none",
-                linewidth=stroke.width, linestyle=(0, (3, 2)) if stroke.is_dashed else "-",
-                capstyle="butt" if stroke.is_dashed else "round",
-                joinstyle="miter" if stroke.fill else "round",
-            ))  # fmt: skip
+            figure.add_artist(
+                PathPatch(
+                    Path(points, codes),
+                    gid=f"{item.kind}.{item.name}.{i}" if is_first else None,
+                    transform=figure.transFigure,
+                    edgecolor=BLACK,
+                    facecolor=stroke.fill or "none",
+                    linewidth=stroke.width,
+                    linestyle=(0, (3, 2)) if stroke.is_dashed else "-",
+                    capstyle="butt" if stroke.is_dashed else "round",
+                    joinstyle="miter" if stroke.fill else "round",
+                )
+            )
         for j, shown in enumerate(item.texts):
             place = (shown.x / across, shown.y / up)
             # An input of a block diagram is a name at the beginning of a wire.

@@ -101,10 +101,17 @@ def add_legend_above(
 ) -> None:
     """Put a legend over a panel; a tight one has shorter lines and gaps."""
     legend = axes.legend(
-        handles=handles, title=title, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=columns,
-        frameon=False, handlelength=2.0 if is_tight else 2.4, columnspacing=1.2 if is_tight else 1.4,
-        borderaxespad=0.2, borderpad=0.1,
-    )  # fmt: skip
+        handles=handles,
+        title=title,
+        loc="lower center",
+        bbox_to_anchor=(0.5, 1.0),
+        ncols=columns,
+        frameon=False,
+        handlelength=2.0 if is_tight else 2.4,
+        columnspacing=1.2 if is_tight else 1.4,
+        borderaxespad=0.2,
+        borderpad=0.1,
+    )
     legend.get_title().set(parse_math=False, multialignment="center")
 
 

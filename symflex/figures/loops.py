@@ -151,9 +151,13 @@ def draw_locus(loop: AnyLoop, canvas: Canvas) -> Figure:
     label_s_plane(axes)
     letters = sum(len(str(label).replace("$", "")) for label in axes.get_legend_handles_labels()[1])
     legend = canvas.legend(
-        axes, title="\n".join(said), frameon=False, handletextpad=0.2, columnspacing=1.0,
+        axes,
+        title="\n".join(said),
+        frameon=False,
+        handletextpad=0.2,
+        columnspacing=1.0,
         ncols=3 if letters <= 18 * width else 2,  # letters of three labels in a line, per inch
-    )  # fmt: skip
+    )
     legend.get_title().set_multialignment("center")
     figure = root_figure(axes)
     if not canvas.axes:

@@ -416,7 +416,12 @@ def _add_legend(figure: Figure, panels: Sequence[Panel], top: float) -> None:
     lagging = Line2D([], [], linewidth=0.9, color=COLOURS[1], label="in quadrature")
     lagging.set(linestyle=style, marker=mark, markersize=2.8, markerfacecolor="none", markeredgewidth=0.8)
     figure.legend(
-        handles=[Line2D([], [], color=COLOURS[0], label="in phase"), lagging], loc="upper right", ncols=2,
-        bbox_to_anchor=(1 - RIGHT / figure.get_figwidth(), top), frameon=False, fontsize=7, borderpad=0.0,
+        handles=[Line2D([], [], color=COLOURS[0], label="in phase"), lagging],
+        loc="upper right",
+        ncols=2,
+        bbox_to_anchor=(1 - RIGHT / figure.get_figwidth(), top),
+        frameon=False,
+        fontsize=7,
+        borderpad=0.0,
         borderaxespad=0.0,
-    )  # fmt: skip
+    )

@@ -37,7 +37,7 @@ from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.functions.simplified import without_squares
 from symflex.roots.passivity import EnergyProof, energy_proof
 from symflex.roots.pole_zero_map import count_right, is_right
-from symflex.roots.root import count_roots, exact_fraction
+from symflex.roots.root import Root, count_roots, exact_fraction
 from symflex.roots.sheets import on_sheet
 from symflex.transfer import BoundTransferFunction
 from symflex.transfer.enclose import first_order
@@ -253,11 +253,10 @@ class DistributedFactors(AxisSearch):
             return PoleCount(count_right(roots), zeros)
         if self.energy.rests:
             return PoleCount(0, zeros)
-        meeting = self.loop and [p for p in degenerate_points(self.bound) if is_right(p)]
         for circle in [self._circle] if self._circle else self._circles:
             try:
-                if self.loop and meeting:
-                    points = DegeneratePoints(self.loop.bound_at(gain), meeting)
+                if self.loop and self._meeting:
+                    points = DegeneratePoints(self.loop.bound_at(gain), self._meeting)
                     return PoleCount(_right_but(points, side, circle), zeros)
                 return PoleCount(side.count_right(log(circle)), zeros)
             except RootOnAxisError:
@@ -267,6 +266,11 @@ class DistributedFactors(AxisSearch):
         message = f"poles in the right half-plane cannot be counted for a gain of {float(gain):.6g}"
         hint = "one may lie on the imaginary axis whatever the gain is"
         raise UncertifiedError(Diagnostic("SF802", message, None, hint))
+
+    @cached_property
+    def _meeting(self) -> list[Root]:
+        """Where wavenumbers meet on the right: the formula is 0/0 there, whatever the gain is."""
+        return [point for point in degenerate_points(self.bound) if is_right(point)]
 
     @property
     def _circles(self) -> list[float]:

@@ -45,7 +45,7 @@ _READINGS: Final = (("re", "im"), *product(("mag_db", "mag"), ("phase_deg", "pha
 @np.errstate(all="ignore")  # numbers that are not finite are reported elsewhere
 def ask(columns: Sequence[DataColumn], unit: str = "f", pair: tuple[DataColumn, ...] = ()) -> str:
     """Return the hint with the option that says what columns are, or a pair, the likeliest reading first."""
-    is_indexed = len(columns) > 2 and counts(columns[0].numbers)  # noqa: PLR2004
+    is_indexed = len(columns) > 2 and counts(columns[0].numbers)  # noqa: PLR2004 (index, axis, value)
     is_indexed = is_indexed and bool(np.all(np.diff(columns[1].numbers.real) > 0))
     axis = next((i for i, c in enumerate(columns) if c.meaning.kind == "frequency"), int(is_indexed))
     if re.search(r"\b(?:time|zeit|temps|tiempo|date|datum)\b|^t(?:\b|_)", columns[axis].name, re.I):

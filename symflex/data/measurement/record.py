@@ -147,7 +147,7 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
         left = [at, *(i for i, x in enumerate(columns) if np.all(np.diff(x) == 1))]
         squares = np.sum([x**2 for i, x in enumerate(columns) if i not in left], axis=0)
         for i, x in enumerate(columns):
-            if width - len(left) > 3 and np.allclose(2 * x**2, squares, 1e-6, 0):  # noqa: PLR2004
+            if width - len(left) > 3 and np.allclose(2 * x**2, squares, 1e-6, 0):  # noqa: PLR2004 (x, y, z)
                 left.append(i)
                 guesses.append(f"'{cells[i][:30]}' is the magnitude of the others and is left out")
         channels = [(_plain(c, i), columns[i]) for i, c in enumerate(cells[:width]) if i not in left]

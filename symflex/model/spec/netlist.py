@@ -43,9 +43,8 @@ EXPRESSION: Final = re.compile(r"[\w\s.+\-*/^()µ]*")
 POWER: Final = re.compile(r"\bpow\(\s*([\w.]+)\s*,\s*(\w+)\s*\)", re.I)
 BRACKETS: Final = r"\((?:[^()]|\([^()]*\))*\)"
 LOG10: Final = re.compile(rf"\blog10\s*({BRACKETS})", re.I)
-TOKEN: Final = re.compile(
-    rf"{{[^}}]*}}|'[^']*'|\"[^\"]*\"|[\w/]+-?\s*{BRACKETS}|[^\s,=()]+|="
-)  # Net-(R1-Pad1)
+TOKEN: Final = re.compile(rf"{{[^}}]*}}|'[^']*'|\"[^\"]*\"|[\w/]+-?\s*{BRACKETS}|[^\s,=()]+|=")
+"""Words; brackets belong to one, as in V(out) and in KiCad's Net-(R1-Pad1)."""
 UNITS: Final = {"R": "Ohm", "L": "H", "C": "F"}
 TYPES: Final = {"R": ("resistor", "R"), "L": ("inductor", "L"), "C": ("capacitor", "C")}
 IGNORED: Final = frozenset(
@@ -493,7 +492,7 @@ class _Netlist:
         known = "avol aol gbw rin rout slew ilimit rail vos phimargin en enk in ink"  # from slew on nonlinear
         if odd := given.keys() - known.split():
             raise line.refuse(f"'{min(odd)[:40]}' of '{words[0][:40]}' is not read", APART)
-        plus, minus, last = (1, 2, 5) if len(words) == 7 else (2, 1, 3)  # noqa: PLR2004
+        plus, minus, last = (1, 2, 5) if len(words) == 7 else (2, 1, 3)  # noqa: PLR2004 (name, 5 nodes, type)
         inputs = (self._node(words[plus], scope), self._node(words[minus], scope))
         out = self._node(words[last], scope)
         inner = self._node(f"{words[0]} out", scope) if "rout" in given else out

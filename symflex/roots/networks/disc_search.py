@@ -114,10 +114,8 @@ class DiscSearch:
     """Finds the roots of numerator and denominator in discs about 0."""
 
     equations: CramerEquations
-    symmetric: tuple[bool, bool] = (
-        False,
-        False,
-    )  # whether roots of den and num mirror each other in the imaginary axis
+    # Whether roots of denominator and numerator mirror each other in the imaginary axis.
+    symmetric: tuple[bool, bool] = (False, False)
     series_bits: int = SERIES_BITS  # to which a series tells the function where it is least
     most_zeros: int | None = None  # where there are not infinitely many
     _lost: int = 0  # bits that elimination lost where it lost most
