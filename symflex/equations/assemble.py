@@ -27,15 +27,7 @@ from symflex.algebra import (
 from symflex.budget import spend
 from symflex.equations.against_text import error_of
 from symflex.equations.equations import ConstantFunction, Continuum, Equations, OutputRow, radicals_of
-from symflex.equations.evaluate import (
-    ExactEvaluator,
-    Opener,
-    cancelled_poles,
-    transfer_of,
-    without_squares,
-    written_denominator,
-    written_poles,
-)
+from symflex.equations.evaluate import Dynamics, ExactEvaluator, Opener, read_block, without_squares
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
 from symflex.expressions import (
     Call,
@@ -73,6 +65,7 @@ if TYPE_CHECKING:
 
 Nested = Callable[[PlacedBlock, Ring], tuple[Factored, Factored]]
 PI = "pi"
+_NOTHING = LinearForm()
 GENERATOR_LIMIT = 1_000  # names over a dense ring, with an exponent each per monomial; a round number
 UNKNOWN_LIMIT = 2_500  # of a dense ring; a singular system is explained with 50 MB of doubles
 SPARSE_LIMIT = 500_000  # names, and unknowns, of equations over a sparse ring
@@ -204,8 +197,6 @@ class _Assembly:
     lines: dict[str, tuple[LineElement, ElementUse]] = field(default_factory=dict)
     # Per line element or field, the points within at which it is cut.
     cuts: dict[str, list[Cut]] = field(default_factory=dict)
-    # Denominators in s of blocks and definitions as they are written, before anything cancels.
-    poles: dict[str, Factored] = field(default_factory=dict)
 
     def survey(self, *, is_nameless: bool, is_cut: bool, is_followed: bool) -> Distributed | None:
         """Return the model's distributed parts; this assembly is over the ring without kernels."""
@@ -215,7 +206,7 @@ class _Assembly:
             return None
         from symflex.equations.distributed import survey  # only with beams
 
-        evaluator, _ = self._evaluator(self._transfers())
+        evaluator, _ = self._evaluator(self._subsystems())
         if self.problems:
             raise ModelError(*self.problems)
         expressions = [e for _, e in self.model.expressions()]
@@ -240,11 +231,14 @@ class _Assembly:
 
     @cached_property
     def _varying(self) -> frozenset[str]:
-        return varying_constants(self.model.definitions, self.model.blocks)
+        definitions = varying_constants(self.model.definitions, self.model.blocks)
+        if self.distributed is None:
+            return definitions
+        propagation = self.distributed.propagation
+        return definitions.union(propagation.ring.names[len(propagation.base.names) :])
 
-    def _evaluator(self, transfers: Mapping[str, Factored]) -> tuple[ExactEvaluator, dict[str, int]]:
-        """Return what evaluates expressions, definitions as letters, and its point of a prime field."""
-        blocks = {b.name: transfers[b.name] for b in self.model.blocks if b.name in transfers}
+    def _evaluator(self, blocks: Mapping[str, Dynamics[Factored]]) -> tuple[ExactEvaluator, dict[str, int]]:
+        """Return what reads expressions, and its point of a prime field; definitions are letters."""
         definitions = {d.name: d.expression for d in self.model.definitions}
         prime, point = self._radicals.point() or (PRIME, random_point(self.ring.names))
         point = {name: number for name, number in point.items() if name not in definitions}
@@ -298,12 +292,10 @@ class _Assembly:
 
     def run(self) -> Equations:
         """Return the finished equations."""
-        transfers = self._transfers()
-        evaluator, point = self._evaluator(transfers)
+        subsystems = self._subsystems()
+        evaluator, point = self._evaluator(subsystems)
         definitions = self._define(evaluator, point)
-        self._check_blocks(transfers, point, evaluator.prime)
-        # As a letter, a definition would hide the poles that cancel against others.
-        dynamic = replace(evaluator, blocks=transfers)
+        self._check_blocks(subsystems, point, evaluator.prime)
         nodes = {n.name: n for n in self.model.nodes}
         for node in self.model.nodes:
             for component in node.components:
@@ -312,16 +304,16 @@ class _Assembly:
         for use in self.model.elements:
             stamp = self._stamp(use, evaluator, nodes, values)
             if stamp is not None:
-                self._take(use, stamp)
+                self._take(use, stamp, evaluator)
         self._take_inputs(nodes, evaluator)
         for variable, expression in values:
-            self._equal(variable, expression, dynamic)
+            self._equal(variable, expression, evaluator)
         for signal in self.model.signals:
-            self._equal(Variable("signal", signal.name), signal.expression, dynamic)
+            self._equal(Variable("signal", signal.name), signal.expression, evaluator)
         for solution in self._solutions():
             self._impose(solution, evaluator)
         self._count_conditions()
-        outputs = [self._output(o.name, o.expression, dynamic) for o in self.model.outputs]
+        outputs = [self._output(o.name, o.expression, evaluator) for o in self.model.outputs]
         if self.problems:
             spend()
             raise error_of(self.problems)
@@ -373,15 +365,19 @@ class _Assembly:
             own = (solution.medium.system, start, length, solution.initial, solution.inputs)
             laws = solution.medium.laws(self.distributed.propagation)
             self.continua.append(Continuum(problem.name, "field", *own, parts=laws))
-        for i, condition in enumerate(solution.field.conditions):
-            try:
-                left, right = (evaluator.linear(e) for e in (condition.left, condition.right))
-            except SymflexError as error:
-                self.problems.extend(error.diagnostics)
-                continue
-            form = left + right * Factored.number(self.ring, -1)
-            about = Variable("field", solution.field.name, f"condition {i + 1}")
-            self.rows.append(EquationRow(about, form, "condition"))
+            for load, form in solution.filtered:
+                embed = self.distributed.propagation.embed
+                self._filtered(load, LinearForm(tuple((v, embed(c)) for v, c in form.terms)))
+        field, inside = (
+            solution.field,
+            replace(evaluator, scope=evaluator.scope.within(solution.field.unknowns)),
+        )
+        for i, equation in enumerate(field.equations):
+            hidden = inside.read_linear(_difference(equation)).hidden
+            self._hide(Variable("field", field.name, f"equation_{i + 1}"), hidden)
+        for i, condition in enumerate(field.conditions):
+            about = Variable("field", field.name, f"condition {i + 1}")
+            self._add_row(about, _difference(condition), evaluator, "condition")
 
     def _count_conditions(self) -> None:
         """Note conditions that are too many or too few where solutions have to be finite at a tip."""
@@ -413,25 +409,28 @@ class _Assembly:
                 definitions.append((definition.name, value))
         return tuple(definitions)
 
-    def _check_blocks(self, blocks: Mapping[str, Factored], point: Mapping[str, int], prime: int) -> None:
+    def _check_blocks(
+        self, read: Mapping[str, Dynamics[Factored]], point: Mapping[str, int], prime: int
+    ) -> None:
         """Note every block that divides by zero once its definitions are opened."""
         for block in self.model.blocks:
             try:
-                residue(blocks[block.name], point, prime)
+                residue(read[block.name].value, point, prime)
             except ZeroDivisionError:
                 self.problems.append(Diagnostic("SF224", f"block '{block.name}' divides by zero", block.span))
             except KeyError:
                 continue
 
-    def _transfers(self) -> Mapping[str, Factored]:
-        """Return the transfer functions of blocks, and of definitions that have poles."""
-        transfers: dict[str, Factored] = {} if self.distributed is None else dict(self.distributed.delays)
-        scope = scope_of(self.model)
+    def _subsystems(self) -> dict[str, Dynamics[Factored]]:
+        """Return what blocks are read as, and definitions with poles: as letters these would hide them."""
+        one = Factored.number(self.ring, 1)
+        delays = {} if self.distributed is None else self.distributed.delays
+        read = {name: Dynamics(delay, one) for name, delay in delays.items()}
         definitions = {d.name: d.expression for d in self.model.definitions}
         evaluator = ExactEvaluator(
             self.ring,
-            scope,
-            transfers,
+            scope_of(self.model),
+            read,
             {},
             definitions,
             radicals=self._radicals,
@@ -441,47 +440,49 @@ class _Assembly:
         blocks = {b.name: b for b in self.model.blocks}
         delayed = self._delayed if self.distributed is None else ()
         for name, expressions in self._constants_in_order.items():
-            if name in transfers or name in delayed:
+            if name in read or name in delayed:
                 continue  # over the ring without kernels a delay has no value
             if name not in blocks:
-                transfers |= self._with_poles(name, expressions[0], evaluator)
+                read |= self._with_poles(name, expressions[0], evaluator)
                 continue
-            block = blocks[name]
             try:
-                values = {LAPLACE: evaluator.s} | {name: evaluator.constant(e) for name, e in block.values}
-                hidden = Factored.number(self.ring, 1)
-                if block.block is ROOT:
-                    transfers[block.name] = Factored.generator(self.ring, LAPLACE)
-                elif block.block is not None:
-                    transfers[block.name] = self._radicals.tidy(transfer_of(block, values))
-                elif self.nested is not None:
-                    ratio, hidden = self.nested(block, self.ring)
-                    transfers[block.name] = self._radicals.tidy(ratio)
-                if block.name in transfers:
-                    self.poles[block.name] = written_poles(block, values, evaluator, self.poles) * hidden
+                subsystem = self._block(blocks[name], evaluator)
+                read |= {} if subsystem is None else {name: subsystem}
             except ZeroDivisionError:
-                self.problems.append(Diagnostic("SF224", f"block '{block.name}' divides by zero", block.span))
-                transfers[block.name] = Factored.number(self.ring, 1)
+                message = f"block '{name}' divides by zero"
+                self.problems.append(Diagnostic("SF224", message, blocks[name].span))
+                read[name] = Dynamics(one, one)
             except SymflexError as error:
                 self.problems.extend(error.diagnostics)
-                transfers[block.name] = Factored.number(self.ring, 1)
-        return transfers
+                read[name] = Dynamics(one, one)
+        return read
 
-    def _with_poles(self, name: str, written: Expression, evaluator: ExactEvaluator) -> dict[str, Factored]:
-        """Return a definition's value by name if it has poles, and note them."""
+    def _block(self, block: PlacedBlock, evaluator: ExactEvaluator) -> Dynamics[Factored] | None:
+        """Return what a block is read as; None of another model's where nothing derives it."""
+        if block.block is ROOT:
+            return Dynamics(Factored.generator(self.ring, LAPLACE), evaluator.one)
+        if block.block is not None:
+            reading = read_block(block, evaluator)
+        elif self.nested is not None:
+            ratio, hidden = self.nested(block, self.ring)
+            reading = Dynamics(ratio, evaluator.in_s(ratio.denominator()) * hidden)
+        else:
+            return None
+        return Dynamics(self._radicals.tidy(reading.value), reading.poles)
+
+    def _with_poles(
+        self, name: str, written: Expression, evaluator: ExactEvaluator
+    ) -> dict[str, Dynamics[Factored]]:
+        """Return what a definition is read as by its name if it has poles."""
         if name not in self._varying:
             return {}
         try:
-            value = evaluator.constant(written)
-            poles = written_denominator(written, evaluator, self.poles)
+            reading = evaluator.read_constant(written)
         except BudgetError:
             raise
         except (SymflexError, ZeroDivisionError):
             return {}  # `_define` reports it
-        if poles.is_constant:
-            return {}
-        self.poles[name] = poles
-        return {name: value}
+        return {} if reading.poles.is_one else {name: reading}
 
     @property
     def _delayed(self) -> set[str]:
@@ -529,10 +530,12 @@ class _Assembly:
                 forms[name] = LinearForm.of((variable, one))
                 continue
             try:
-                constants[name] = evaluator.along_x().constant(expression)
+                reading = evaluator.along_x().read_constant(expression)
             except SymflexError as error:
                 self.problems.extend(error.diagnostics)
                 return None
+            constants[name] = reading.value
+            self._hide(Variable("value", use.name, name), reading.hidden)
         terminals = {
             port: tuple(self._terminal(r, dict(use.domains)[port], nodes) for r in references)
             for port, references in use.nodes
@@ -549,6 +552,7 @@ class _Assembly:
             dict(use.choices),
             transmissions.get(use.name, ()),
             self.distributed is not None and use.name in self.distributed.turned,
+            self._varying,
         )
         if isinstance(use.element, LineElement):
             self.lines[use.name] = (use.element, element_use)
@@ -579,20 +583,32 @@ class _Assembly:
             return PortTerminal(None, moving["y"], moving["theta"], moving.get("x"))
         return PortTerminal(variable_of(reference, node, domain))
 
-    def _take(self, use: PlacedElement, stamp: Stamp) -> None:
+    def _take(self, use: PlacedElement, stamp: Stamp, evaluator: ExactEvaluator) -> None:
         for branch in stamp.branches:
             key = (branch.b, branch.a) if (branch.b, branch.a) in self.branches else (branch.a, branch.b)
             earlier = self.branches.get(key)
             self.branches[key] = branch.admittance if earlier is None else earlier + branch.admittance
-        for injection in stamp.injections:
-            if injection.node is not None:
-                minus = Factored.number(self.ring, -1)
-                own = self.balance[injection.node]
-                self.balance[injection.node] = _side_by_side(own, injection.form * minus)
+        for number, injection in enumerate(stamp.injections):
+            if injection.node is None:
+                continue
+            form, below = injection.form, common_denominator(self.ring, injection.form.coefficients)
+            if not evaluator.in_s(below).is_one:
+                # A filter with states of its own, even where another with the same poles acts on the node.
+                form = self._filtered(Variable("value", use.name, f"delivered_{number + 1}"), form)
+            own = self.balance[injection.node]
+            self.balance[injection.node] = _side_by_side(own, form * Factored.number(self.ring, -1))
         self.unknowns += stamp.unknowns
         self.rows += stamp.rows
         for quantity, form in stamp.through:
             self.through[Variable("through", use.name, quantity)] = form
+
+    def _filtered(self, variable: Variable, form: LinearForm) -> LinearForm:
+        """Return an unknown that equals a combination whose coefficients have poles."""
+        below = common_denominator(self.ring, form.coefficients)
+        self.unknowns.append(variable)
+        law = form * below + LinearForm.of((variable, -below))
+        self.rows.append(EquationRow(variable, law, "signal"))
+        return LinearForm.of((variable, Factored.number(self.ring, 1)))
 
     def _balances(self) -> list[EquationRow]:
         """Return each node's balance: what flows out through branches minus what is delivered."""
@@ -637,35 +653,50 @@ class _Assembly:
 
     def _equal(self, variable: Variable, expression: Expression, evaluator: ExactEvaluator) -> None:
         """Add the row ``variable = expression``, or an equation that stands in its place."""
-        role: Role = "signal"
-        given: tuple[tuple[Variable, Factored], ...] = ((variable, Factored.number(self.ring, -1)),)
+        self.unknowns.append(variable)
         if isinstance(expression, Equation):
-            role, given = "equation", ()
-            expression = Sum((expression.left, Negative(expression.right)), span=expression.span)
+            self._add_row(variable, _difference(expression), evaluator, "equation")
+        else:
+            given = LinearForm.of((variable, -evaluator.one))
+            self._add_row(variable, expression, evaluator, "signal", given)
+
+    def _add_row(
+        self,
+        about: Variable,
+        expression: Expression,
+        evaluator: ExactEvaluator,
+        role: Role,
+        given: LinearForm = _NOTHING,
+    ) -> None:
+        """Add the row ``given + expression = 0``, cleared of the poles that the expression has."""
         try:
-            form = evaluator.linear(expression)
+            reading = evaluator.read_linear(expression)
         except SymflexError as error:
             self.problems.extend(error.diagnostics)
             return
-        below = common_denominator(self.ring, form.coefficients)
-        cancelled = cancelled_poles(expression, below, evaluator, self.poles)
-        # What is left below a row may have the same factors, which would cancel these once more.
-        row = (LinearForm.of(*given) + form) * (
-            cancelled * below.filter(lambda f: cancelled.exponent_of(f) > 0)
-        )
-        self.unknowns.append(variable)
-        self.rows.append(EquationRow(variable, row, role))
+        self._hide(about, reading.hidden)
+        self.rows.append(EquationRow(about, (given + reading.value) * reading.kept, role))
+
+    def _hide(self, about: Variable, poles: Factored) -> None:
+        """Add the states that cancelled where something was read: modes that no input moves."""
+        if not poles.is_one:
+            state = replace(about, kind="value", component=f"{about.component}_hidden".lstrip("_"))
+            self.unknowns.append(state)
+            self.rows.append(EquationRow(state, LinearForm.of((state, poles)), "hidden"))
 
     def _output(self, name: str, expression: Expression, evaluator: ExactEvaluator) -> OutputRow | None:
         try:
-            form = evaluator.linear(expression)
+            reading = evaluator.read_linear(expression)
         except SymflexError as error:
             self.problems.extend(error.diagnostics)
             return None
         # A filter in an output is the output's own: as an unknown it would be a mode of all the others.
-        below = common_denominator(self.ring, form.coefficients)
-        divisor = below * cancelled_poles(expression, below, evaluator, self.poles)
-        return OutputRow(name, form * divisor, divisor)
+        divisor = reading.below * reading.hidden
+        return OutputRow(name, reading.value * divisor, divisor)
+
+
+def _difference(equation: Equation) -> Expression:
+    return Sum((equation.left, Negative(equation.right)), span=equation.span)
 
 
 def _side_by_side(left: LinearForm, right: LinearForm) -> LinearForm:

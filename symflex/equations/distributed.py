@@ -6,7 +6,7 @@ Output: a :class:`Distributed`, with the ring that has generators for every fund
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import factorial, pi, prod
@@ -84,6 +84,7 @@ class FieldSolution:
     medium: Medium  # its equations
     inputs: tuple[Variable, ...]  # what loads it all along
     origin: Factored  # the start, over the ring without kernels: where x begins, or the end that is singular
+    filtered: tuple[tuple[Variable, LinearForm], ...] = ()  # the loads that are filters, and of what
 
     @property
     def initial(self) -> tuple[Variable | None, ...]:
@@ -468,7 +469,17 @@ def _solution(field: FieldProblem, evaluator: ExactEvaluator, demands: _Demands)
     if written not in ((), given) and any(map(varies_along_x, given)):
         given, unknowns = named_brackets(written, unknowns)
     inside = replace(evaluator, scope=evaluator.scope.within(unknowns))
-    equations = [read_equation(e, unknowns, inside) for e in given]
+    equations: list[FieldEquation] = []
+    filtered: dict[Variable, LinearForm] = {}
+    for equation in (read_equation(e, unknowns, inside) for e in given):
+        loads: dict[Hashable, Factored] = {}
+        for source, value in equation.loads.items():
+            if isinstance(source, Variable) and not inside.in_s(value.denominator()).is_one:
+                load = Variable("value", field.name, f"load_{len(filtered) + 1}")
+                filtered[load], loads[load] = LinearForm.of((source, value)), inside.one
+            else:
+                loads[source] = value
+        equations.append(replace(equation, loads=loads))
     inputs = tuple(dict.fromkeys(v for e in equations for v in e.loads if isinstance(v, Variable)))
     zero = Factored.number(evaluator.ring, 0)
     system = first_order(unknowns, inputs, equations, zero)
@@ -497,7 +508,8 @@ def _solution(field: FieldProblem, evaluator: ExactEvaluator, demands: _Demands)
                 "is not available"
             )
             raise ModelError(Diagnostic("SF910", message, field.span, "put the load into the conditions"))
-    return FieldSolution(field, medium, inputs, medium.origin or evaluator.constant(field.start))
+    origin = medium.origin or evaluator.constant(field.start)
+    return FieldSolution(field, medium, inputs, origin, tuple(filtered.items()))
 
 
 def _singular(

@@ -1,7 +1,14 @@
-"""From expressions to linear forms over the exact ring.
+"""From expressions to linear forms over the exact ring, with the subsystems they are written with.
 
-Also the states an expression is written with, the product of all denominators in s along its products: what
-cancels between blocks in it is a hidden mode, not nothing.
+Input: an expression of a model, wherever it stands. Output: a :class:`Dynamics`: its value in lowest terms,
+and the product of all denominators in s along its products.
+
+    "(s - 1)*P" of a block P = 1/(s - 1)    value 1, written poles s - 1, all of which cancelled
+
+A product is a series connection of its factors, and a sum a parallel one of its terms; a subsystem that
+several terms of a sum share is one. What stands in the poles but no longer below the value is a mode that one
+side of the product does not control, or the other does not observe (Kalman 1963): a hidden mode of the model,
+not nothing. Delays count as s does: ``1 - 2 exp(-s T)`` has zeros, and what is divided by it has poles.
 """
 
 from __future__ import annotations
@@ -11,6 +18,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from math import isqrt, prod
+from typing import Generic, TypeVar
 
 from symflex.algebra import (
     LAPLACE,
@@ -18,13 +26,14 @@ from symflex.algebra import (
     Factored,
     Radicals,
     Ring,
+    common_denominator,
     composed,
     degree_in,
     least_common_multiple,
     residue,
 )
 from symflex.equations.against_text import compare, number_of_form
-from symflex.errors import BudgetError, Diagnostic, ModelError
+from symflex.errors import BudgetError, Diagnostic, ModelError, Span
 from symflex.expressions import (
     Attribute,
     Call,
@@ -42,7 +51,7 @@ from symflex.expressions import (
     names_among,
     substitute,
 )
-from symflex.library.blocks import StateSpaceBlock, TransferFunctionBlock
+from symflex.library.blocks import StateSpaceBlock
 from symflex.library.elements import LinearForm, Variable
 from symflex.model import ModelScope, PlacedBlock
 from symflex.model.linearity import factored_of
@@ -70,13 +79,42 @@ def transfer_of(block: PlacedBlock, values: Mapping[str, Factored]) -> Factored:
     return factored_of(block.formula, values[LAPLACE].ring, values.__getitem__)
 
 
+Kind_co = TypeVar("Kind_co", bound="Factored | LinearForm", covariant=True)
+
+
+@dataclass(frozen=True, slots=True)
+class Dynamics(Generic[Kind_co]):
+    """What an expression is, and the subsystems it is written with."""
+
+    value: Kind_co  # of constants, or of unknowns
+    poles: Factored  # the product of denominators in s before anything cancels
+
+    @property
+    def below(self) -> Factored:
+        """The denominator of the value."""
+        if isinstance(self.value, Factored):
+            return self.value.denominator()
+        return common_denominator(self.poles.ring, self.value.coefficients)
+
+    @property
+    def hidden(self) -> Factored:
+        """The poles that cancelled above what is left below: they stay modes."""
+        below = self.below
+        return self.poles if below.is_one else least_common_multiple(below, (self.poles,)) / below
+
+    @property
+    def kept(self) -> Factored:
+        """The poles that did not cancel."""
+        return self.poles / self.hidden
+
+
 @dataclass(frozen=True)
 class ExactEvaluator:
     """Evaluates the expressions of one model."""
 
     ring: Ring  # generators: s, parameters, definitions, pi and elementary functions of constants
     scope: ModelScope  # what names mean
-    blocks: Mapping[str, Factored]  # transfer functions of blocks, and of definitions that are no letters
+    blocks: Mapping[str, Dynamics[Factored]]  # of blocks, and of definitions that are no letters
     through: Mapping[Variable, LinearForm]  # the elements' through quantities
     definitions: Mapping[str, Expression]  # opened inside the arguments of functions
     point: Mapping[str, int] = field(default_factory=dict)  # random, of a prime field
@@ -88,7 +126,10 @@ class ExactEvaluator:
     states: dict[Expression, LinearForm] = field(default_factory=dict, repr=False)
     root: RootOfS | None = None  # where the ring's s stands for a root of s
     is_constant: bool = False  # where only constants may stand, a parameter may share its name with a node
-    varying: Collection[str] = ()  # definitions that depend on s
+    varying: Collection[str] = ()  # generators other than s that depend on it: definitions, delays
+    given: Mapping[str, Dynamics[Factored]] = field(
+        default_factory=dict
+    )  # the values a block's formula names
 
     @cached_property
     def s(self) -> Factored:
@@ -114,21 +155,29 @@ class ExactEvaluator:
 
     def constant(self, expression: Expression) -> Factored:
         """Return the value of an expression without unknowns; SF224 division by zero, SF501 too large."""
+        return self.read_constant(expression).value
+
+    def read_constant(self, expression: Expression) -> Dynamics[Factored]:
+        """Return what an expression without unknowns is read as, with the same errors."""
         if not self.is_constant:
-            return self._of_constants.constant(expression)
-        value = self.value(expression)
-        if isinstance(value, LinearForm):
+            return self._of_constants.read_constant(expression)
+        reading = self.read(expression)
+        if isinstance(reading.value, LinearForm):
             message = f"'{format_expression(expression)}' must be constant"
             raise ModelError(Diagnostic("SF212", message, expression.span))
-        return value
+        return Dynamics(reading.value, reading.poles)
 
     def linear(self, expression: Expression) -> LinearForm:
         """Return an expression of unknowns and inputs as a linear form; zero is the empty form."""
-        value = self.value(expression)
-        if isinstance(value, LinearForm):
-            return value
-        if value.is_zero:
-            return LinearForm()
+        return self.read_linear(expression).value
+
+    def read_linear(self, expression: Expression) -> Dynamics[LinearForm]:
+        """Return what an expression of unknowns and inputs is read as."""
+        reading = self.read(expression)
+        if isinstance(reading.value, LinearForm):
+            return Dynamics(reading.value, reading.poles)
+        if reading.value.is_zero:
+            return Dynamics(LinearForm(), reading.poles)
         raise ModelError(Diagnostic("SF221", "the expression has a term without an unknown", expression.span))
 
     @property
@@ -143,78 +192,112 @@ class ExactEvaluator:
 
     def number_of_leaf(self, expression: Expression) -> int:
         """Return the number a name or a call is at the point; KeyError where it has none."""
-        found = number_of_form(self._evaluate(expression), self.place)
+        found = number_of_form(self._read(expression).value, self.place)
         if found is None:
             raise KeyError
         return found
 
-    def is_block(self, expression: Name) -> bool:
-        """Tell whether a name is read as a block, or as a definition with poles."""
-        kind = self.scope.lookup(expression, constant=False).kind
-        return expression.name in self.blocks and kind in ("block", "definition")
-
-    def value(self, expression: Expression) -> Factored | LinearForm:
-        """Return the value of an expression, of constants or of unknowns."""
+    def read(self, expression: Expression) -> Dynamics[Factored | LinearForm]:
+        """Return what an expression of constants or of unknowns is read as: all that holds s passes here."""
         try:
-            value = self._evaluate(expression)
+            reading = self._read(expression)
+            value = reading.value
             if isinstance(value, LinearForm):
                 value = without_squares(value, self.radicals)
             elif self.radicals:
                 value = self.radicals.tidy(value)
             if expression.children and self.is_decided:
                 compare(expression, number_of_form(value, self.place), self.number_of_leaf, self.prime)
-            return value
+            return Dynamics(value, reading.poles)
         except BudgetError as error:
             located = (replace(d, span=d.span or expression.span) for d in error.diagnostics)
             raise BudgetError(*located) from None
 
-    def _evaluate(self, expression: Expression) -> Factored | LinearForm:
+    @cached_property
+    def one(self) -> Factored:
+        """The ring's one: the poles of what has no dynamics."""
+        return Factored.number(self.ring, 1)
+
+    def in_s(self, value: Factored) -> Factored:
+        """Return the factors that depend on s, directly or through a definition or a delay."""
+        places = [self.ring.index[name] for name in (LAPLACE, *self.varying) if name in self.ring.index]
+        return value.filter(lambda factor: any(degree_in(factor, place) for place in places))
+
+    def _read(self, expression: Expression) -> Dynamics[Factored | LinearForm]:
         match expression:
             case Number(value):
-                return Factored.number(self.ring, value)
+                return Dynamics(Factored.number(self.ring, value), self.one)
             case Name() | Attribute():
                 return self._name(expression)
             case Negative(operand):
-                return self._evaluate(operand) * Factored.number(self.ring, -1)
+                return self._times(self._read(operand), Factored.number(self.ring, -1), self.one)
             case Sum(terms):
                 return self._sum(expression, terms)
             case Product(factors):
-                result: Factored | LinearForm = Factored.number(self.ring, 1)
+                result: Dynamics[Factored | LinearForm] = Dynamics(self.one, self.one)
                 for factor in factors:
-                    result = _product(result, self._evaluate(factor), expression)
+                    result = self._product(result, self._read(factor), expression)
                 return result
             case Quotient(numerator, denominator):
-                divisor = self.constant(denominator)
-                if self.vanishes(divisor):
-                    raise ModelError(
-                        Diagnostic("SF224", "division by zero", denominator.span or expression.span)
-                    )
-                return self._evaluate(numerator) * divisor**-1
+                inverse = self._inverse(self.read_constant(denominator), denominator.span or expression.span)
+                return self._times(self._read(numerator), inverse.value, inverse.poles)
             case Power(base, exponent):
                 return self._power(expression, base, exponent)
             case Call(name) if name in self.fields and self.field_value is not None:
                 if expression not in self.states:
                     self.states[expression] = self.field_value(expression)
-                return self.states[expression]
+                return Dynamics(self.states[expression], self.one)
             case Call(name, argument):
-                return self._call(expression, name, argument)
+                return Dynamics(self._call(expression, name, argument), self.one)
             case Derivative(name, order):
                 derivative = Variable("field", name, "'" * order)
-                return LinearForm.of((derivative, Factored.number(self.ring, 1)))
+                return Dynamics(LinearForm.of((derivative, self.one)), self.one)
         raise TypeError(f"unexpected expression {type(expression).__name__}")
 
-    def _name(self, expression: Name | Attribute) -> Factored | LinearForm:
+    def _times(
+        self, reading: Dynamics[Factored | LinearForm], factor: Factored, poles: Factored
+    ) -> Dynamics[Factored | LinearForm]:
+        """Return a reading in series with a constant; nothing is connected where the product is zero."""
+        value = reading.value * factor
+        is_zero = value.is_zero if isinstance(value, Factored) else not value.terms
+        return Dynamics(value, self.one if is_zero else reading.poles * poles)
+
+    def _product(
+        self,
+        left: Dynamics[Factored | LinearForm],
+        right: Dynamics[Factored | LinearForm],
+        expression: Expression,
+    ) -> Dynamics[Factored | LinearForm]:
+        if not isinstance(right.value, LinearForm):
+            return self._times(left, right.value, right.poles)
+        if isinstance(left.value, LinearForm):
+            raise ModelError(Diagnostic("SF222", "a product of two unknowns is not linear", expression.span))
+        return self._times(right, left.value, left.poles)
+
+    def _inverse(self, reading: Dynamics[Factored], span: Span | None) -> Dynamics[Factored]:
+        """Return one over a constant: its poles are the zeros of that, and the poles that cancelled in it."""
+        value = reading.value
+        if self.vanishes(value):
+            raise ModelError(Diagnostic("SF224", "division by zero", span))
+        return Dynamics(value**-1, self.in_s(value.numerator()) * reading.hidden)
+
+    def _name(self, expression: Name | Attribute) -> Dynamics[Factored | LinearForm]:
+        if expression.name in self.given:
+            value = self.given[expression.name]
+            return Dynamics(value.value, value.poles)
         is_shared = len(self.scope.meanings.get(expression.name, ())) > 1
         meaning = self.scope.lookup(expression, constant=self.is_constant and is_shared)
         if meaning.kind == "block" or (meaning.kind == "definition" and meaning.name in self.blocks):
-            return self._block(expression, meaning.name)
+            block = self._block(expression, meaning.name)
+            return Dynamics(block.value, block.poles)
         if meaning.kind == "through" and meaning.variable is not None:
-            return self.through[meaning.variable]
+            return Dynamics(self.through[meaning.variable], self.one)
         if meaning.variable is not None:
-            return LinearForm.of((meaning.variable, Factored.number(self.ring, 1)))
-        return self.s if meaning.name == LAPLACE else Factored.generator(self.ring, meaning.name)
+            return Dynamics(LinearForm.of((meaning.variable, self.one)), self.one)
+        own = self.s if meaning.name == LAPLACE else Factored.generator(self.ring, meaning.name)
+        return Dynamics(own, self.one)
 
-    def _block(self, expression: Name | Attribute, name: str) -> Factored:
+    def _block(self, expression: Name | Attribute, name: str) -> Dynamics[Factored]:
         if name not in self.blocks:
             # Only while kernels are surveyed: everywhere else every block has a value.
             message = "a delay inside a field's equation or a length is not available"
@@ -223,27 +306,29 @@ class ExactEvaluator:
             raise ModelError(Diagnostic("SF910", message, expression.span, hint))
         return self.blocks[name]
 
-    def _sum(self, expression: Sum, terms: tuple[Expression, ...]) -> Factored | LinearForm:
-        values = [self._evaluate(term) for term in terms]
-        forms = [v for v in values if isinstance(v, LinearForm)]
-        constants = [v for v in values if isinstance(v, Factored) and not v.is_zero]
+    def _sum(self, expression: Sum, terms: tuple[Expression, ...]) -> Dynamics[Factored | LinearForm]:
+        readings = [self._read(term) for term in terms]
+        poles = least_common_multiple(self.one, (r.poles for r in readings if not r.poles.is_one))
+        forms = [r.value for r in readings if isinstance(r.value, LinearForm)]
+        constants = [r.value for r in readings if isinstance(r.value, Factored) and not r.value.is_zero]
         if not forms:
-            return sum(constants, Factored.number(self.ring, 0))
+            return Dynamics(sum(constants, Factored.number(self.ring, 0)), poles)
         if constants:
             raise ModelError(Diagnostic("SF221", "the sum has a term without an unknown", expression.span))
-        return LinearForm.total(forms)
+        return Dynamics(LinearForm.total(forms), poles)
 
-    def _power(self, expression: Power, base: Expression, exponent: Expression) -> Factored | LinearForm:
-        value = self._evaluate(base)
-        power = self.constant(exponent)
-        n = int(power.unit)
-        if isinstance(value, LinearForm):
+    def _power(
+        self, expression: Power, base: Expression, exponent: Expression
+    ) -> Dynamics[Factored | LinearForm]:
+        reading = self._read(base)
+        n = int(self.constant(exponent).unit)
+        if isinstance(reading.value, LinearForm):
             if n == 1:
-                return value
+                return reading
             raise ModelError(Diagnostic("SF222", "a power of an unknown is not linear", expression.span))
-        if n < 0 and self.vanishes(value):
-            raise ModelError(Diagnostic("SF224", "division by zero", expression.span))
-        return value**n
+        factor = Dynamics(reading.value, reading.poles)
+        factor = self._inverse(factor, expression.span) if n < 0 else factor
+        return Dynamics(factor.value ** abs(n), factor.poles ** abs(n))
 
     def vanishes(self, value: Factored) -> bool:
         """Tell whether a value is zero, also where it only is with its definitions opened."""
@@ -350,78 +435,17 @@ def exact_root(value: Fraction) -> Fraction | None:
     return Fraction(top, bottom) if exact else None
 
 
-def _product(
-    left: Factored | LinearForm, right: Factored | LinearForm, expression: Expression
-) -> Factored | LinearForm:
-    if not isinstance(right, LinearForm):
-        return left * right
-    if isinstance(left, LinearForm):
-        raise ModelError(Diagnostic("SF222", "a product of two unknowns is not linear", expression.span))
-    return right * left
-
-
-def written_poles(
-    block: PlacedBlock,
-    values: Mapping[str, Factored],
-    evaluator: ExactEvaluator,
-    poles: Mapping[str, Factored],
-) -> Factored:
-    """Return the denominator in s of a block before anything cancels, from ``values`` as in transfer_of."""
-    if isinstance(block.block, StateSpaceBlock):
-        return _in_s(block.block.characteristic(values))
-    if isinstance(block.block, TransferFunctionBlock):
-        given = dict(block.values)
-        return written_denominator(Quotient(given["num"], given["den"]), evaluator, poles)
-    below = evaluator.blocks[block.name].denominator()
-    if isinstance(block.formula, Quotient):
-        below = factored_of(block.formula.denominator, evaluator.ring, values.__getitem__).numerator()
-    within = (written_denominator(e, evaluator, poles) for _, e in block.values)
-    return least_common_multiple(_in_s(below), within)
-
-
-def written_denominator(
-    expression: Expression, evaluator: ExactEvaluator, poles: Mapping[str, Factored]
-) -> Factored:
-    """Return the denominator in s of an expression before anything cancels; ``poles`` are those of blocks.
-
-    A product of blocks has the poles of every factor; a sum needs those of each term once.
-    """
-    one = Factored.number(evaluator.ring, 1)
-    match expression:
-        case Name(name) if evaluator.is_block(expression):
-            return poles.get(name, one)
-        case Negative(operand):
-            return written_denominator(operand, evaluator, poles)
-        case Product(factors):
-            return prod((written_denominator(factor, evaluator, poles) for factor in factors), start=one)
-        case Quotient(numerator, denominator):
-            below = _inverted(denominator, evaluator, poles)
-            return written_denominator(numerator, evaluator, poles) * below
-        case Power(base, exponent):
-            n = int(evaluator.constant(exponent).unit)
-            if n >= 0:
-                return written_denominator(base, evaluator, poles) ** n
-            return _inverted(base, evaluator, poles) ** -n
-        case Sum(terms):
-            return least_common_multiple(one, (written_denominator(t, evaluator, poles) for t in terms))
-    return one
-
-
-def cancelled_poles(
-    expression: Expression, below: Factored, evaluator: ExactEvaluator, poles: Mapping[str, Factored]
-) -> Factored:
-    """Return the poles that cancelled above what is left ``below`` an expression: they stay modes."""
-    return least_common_multiple(below, (written_denominator(expression, evaluator, poles),)) / below
-
-
-def _inverted(expression: Expression, evaluator: ExactEvaluator, poles: Mapping[str, Factored]) -> Factored:
-    """Return the denominator in s of an expression's inverse: its zeros, and the poles that cancel in it."""
-    value = evaluator.constant(expression)
-    zeros = _in_s(value.numerator(), evaluator.varying)
-    return zeros * cancelled_poles(expression, value.denominator(), evaluator, poles)
-
-
-def _in_s(value: Factored, varying: Collection[str] = ()) -> Factored:
-    """Return the factors that contain s, or a definition that does."""
-    places = [value.ring.index[name] for name in (LAPLACE, *varying) if name in value.ring.index]
-    return value.filter(lambda factor: any(degree_in(factor, place) for place in places))
+def read_block(block: PlacedBlock, evaluator: ExactEvaluator) -> Dynamics[Factored]:
+    """Return what a block is read as that is no other model's and no delay; ZeroDivisionError."""
+    entries = {name: evaluator.read_constant(e) for name, e in block.values}
+    if block.formula is not None:
+        try:
+            return replace(evaluator, given=entries).read_constant(block.formula)
+        except ModelError as error:
+            raise ZeroDivisionError from error  # the only thing that can be wrong with a formula of its own
+    assert isinstance(block.block, StateSpaceBlock)
+    values = {LAPLACE: evaluator.s} | {name: reading.value for name, reading in entries.items()}
+    # Each entry is a subsystem in series with others: det(s - A) with the entries' own poles cleared.
+    within = prod((reading.poles for reading in entries.values()), start=evaluator.one)
+    poles = evaluator.in_s(block.block.characteristic(values) * within)
+    return Dynamics(block.block.transfer(values), poles)

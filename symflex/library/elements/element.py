@@ -7,7 +7,7 @@ Output: a :class:`Stamp`, pure data.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar, Final, Literal
 
@@ -20,7 +20,7 @@ Domain = Literal["translation", "rotation", "electrical", "acoustic", "thermal"]
 Placing = Domain | Literal["planar", "plane"]
 PortDomain = Placing | Literal["any", "whole"]
 
-Role = Literal["balance", "law", "constraint", "signal", "equation", "condition"]
+Role = Literal["balance", "law", "constraint", "signal", "equation", "condition", "hidden"]
 
 COMPONENTS: dict[str, tuple[str, ...]] = {"planar": ("y", "theta"), "plane": ("x", "y", "theta")}
 """What a node of several degrees of freedom is made of; one ``plane`` moves along x, too."""
@@ -209,11 +209,17 @@ class ElementUse:
     # empty for others.
     transmission: tuple[tuple[Factored, ...], ...] = ()
     is_turned: bool = False  # whether the matrix takes the state from the second end, a tip, to the first
+    varying: Collection[str] = ()  # generators other than s that depend on it: definitions, delays
 
     @property
     def one(self) -> Factored:
         """The ring's one."""
         return self.s**0
+
+    def depends_on_s(self, value: Factored) -> bool:
+        """Tell whether a value depends on s, directly or through a definition or a delay."""
+        known = value.ring.index
+        return any(value.depends_on(name) for name in ("s", *self.varying) if name in known)
 
     def unknown(self, component: str) -> Variable:
         """Return a through variable of this element."""
@@ -285,7 +291,7 @@ def two_terminal(use: ElementUse, port: str, quantity: str, admittance: Factored
     ends = use.across(port)
     a, b = ends if len(ends) == 2 else (ends[0], None)  # noqa: PLR2004
     denominator = admittance.denominator()
-    if not denominator.depends_on("s"):
+    if not use.depends_on_s(denominator):
         form = LinearForm.of((a, admittance), (b, -admittance))
         return Stamp(branches=(Admittance(a, b, admittance),), through=((quantity, form),))
     law = LinearForm.of((use.unknown(quantity), denominator))

@@ -52,7 +52,7 @@ w = { domain = ["0", "l"], equation = "N*w'' = mu*s^2*w", conditions = ["w(0) = 
 
 def test_a_product_that_loses_a_factor_is_noticed(monkeypatch):
     pipeline.assemble(pipeline.loads(LOOP))
-    monkeypatch.setattr(evaluate, "_product", lambda left, right, expression: right)
+    monkeypatch.setattr(evaluate.ExactEvaluator, "_product", lambda self, left, right, expression: right)
     with pytest.raises(InternalError, match="was not read as it is written"):
         pipeline.assemble(pipeline.loads(LOOP))
 

@@ -8,7 +8,7 @@ import pytest
 from symflex import pipeline
 from symflex.algebra import PRIME, Factored, Ring, residue
 from symflex.equations.distributed import read_equation
-from symflex.equations.evaluate import ExactEvaluator, exact_root
+from symflex.equations.evaluate import Dynamics, ExactEvaluator, exact_root
 from symflex.errors import BudgetError, ModelError, Source, Span, Text
 from symflex.expressions import Name, names, parse_equation
 from symflex.expressions import parse as parse_text
@@ -48,7 +48,9 @@ def parse(text):
 def evaluator(**more):
     definitions = {d.name: d.expression for d in MODEL.definitions}
     through = {SPRING: LinearForm.of((Variable("node", "x"), K))}
-    return ExactEvaluator(RING, scope_of(MODEL), {"G": K / (S + M)}, through, definitions, POINT, **more)
+    return ExactEvaluator(
+        RING, scope_of(MODEL), {"G": Dynamics(K / (S + M), S + M)}, through, definitions, POINT, **more
+    )
 
 
 def in_field(value):

@@ -1,5 +1,8 @@
 from math import prod
 
+import numpy as np
+import pytest
+
 from symflex import pipeline
 from symflex.roots import Modes
 from symflex.roots.locate import locate
@@ -170,3 +173,129 @@ def test_what_an_expression_divides_by_is_kept_where_it_cancels():
         wanted = [tf.ratio.ring.generator("s") - pole for pole in poles]
         assert tf.order == order, expression
         assert prod(found) == prod(wanted), expression
+
+
+# ---------------------------------------------------------------------- values of elements, fields and blocks
+
+PLANT = """symflex = 1
+parameters = {{ k = "3 N/m", c = "5 N*s/m", m = "1 kg" }}
+{subsystems}
+inputs = {{ F = {{ force = "x" }} }}
+outputs = {{ X = "x" }}
+[elements]
+body = {{ type = "mass", at = "x", m = "{m}" }}
+damper = {{ type = "damper", between = ["x", "ground"], b = "{c}" }}
+spring = {{ type = "spring", between = ["x", "ground"], k = "{k}" }}
+"""
+
+
+def poles_of(text):
+    """Return the visible poles and the hidden ones, with multiplicity."""
+    model = pipeline.loads(text)
+    (bound,) = pipeline.derive_bound(model, model.transfer_functions[:1])
+    found = locate(bound)
+    visible, unseen = found.poles, [h.root for h in found.hidden]
+    return [
+        sorted(round(float(r.re.mid()), 9) for r in roots for _ in range(r.multiplicity))
+        for roots in (visible, unseen)
+    ]
+
+
+def test_a_pole_that_cancels_in_the_value_of_an_element_is_hidden():
+    """The subsystem z' = z + e with output (s - 1)/(s + 2) of it has det = (s - 1)*(s + 2) by itself."""
+    for subsystems in (
+        'blocks = { P = "1/(s - 1)", C = "(s - 1)/(s + 2)" }',
+        'definitions = { P = "1/(s - 1)", C = "(s - 1)/(s + 2)" }',
+        'definitions = { Z = "s - 1", P = "1/Z", C = "Z/(s + 2)" }',
+        'definitions = { Z = "s - 1", C = "Z/(s + 2)" }\nblocks = { P = "1/Z" }',
+    ):
+        for place, value in (
+            ("k", "k*(1 + P*C)"), ("k", "k + C*k*P"), ("k", "k*(1 + C/(1/P))"), ("c", "c*(1 + P*C)"),
+            ("m", "m*(1 + P*C)"),
+        ):  # fmt: skip
+            text = PLANT.format(**{"m": "m", "c": "c", "k": "k", "subsystems": subsystems, place: value})
+            visible, unseen = poles_of(text)
+            assert unseen == [1], (subsystems, value)
+            # m s^2 + c s + k, of which one has the factor 1 + 1/(s + 2) = (s + 3)/(s + 2)
+            m, c, k = (
+                np.polymul({"m": [1, 0, 0], "c": [5, 0], "k": [3]}[n], [1, 3 if n == place else 2])
+                for n in "mck"
+            )
+            expected = np.roots(np.polyadd(np.polyadd(m, c), k))
+            assert visible == pytest.approx(sorted(expected.real), abs=1e-8), (subsystems, value)
+
+
+def test_two_filters_that_act_on_one_shaft_have_a_state_each():
+    """Only their sum turns the shaft: J s^2 (1 + T s) + 2 k_t k_e s/R, and the difference decays with T."""
+    text = """symflex = 1
+parameters = { R = "1 Ohm", k_t = "2 N*m/A", T = "0.5 s", J = "1 kg*m^2" }
+inputs = { u = { voltage = "a" }, v = { voltage = "b" } }
+outputs = { X = "x" }
+[elements]
+rotor = { type = "inertia", at = "x", J = "J" }
+"""
+    for n in "ab":
+        text += (
+            f'm_{n} = {{ type = "dc_motor", terminals = ["{n}", "ground"], shaft = "x", R = "R", '
+            'k_t = "k_t/(1 + T*s)", k_e = "k_t" }\n'
+        )
+    assert poles_of(text) == [[-1, -1, 0], [-2]]  # s^2 + 2 s + 16 has the roots -1 +- 3.87j
+
+
+ROD = """symflex = 1
+parameters = {{ EA = "1 N", rhoA = "1 kg/m", l = "1 m", eta = "0.5 s" }}
+blocks = {{ P = "1/(s - 1)", C = "(s - 1)/(s + 2)" }}
+inputs = {{ F = {{ unit = "N" }}, d = {{}} }}
+outputs = {{ W = "w(l)" }}
+[fields.w]
+domain = ["0", "l"]
+equation = "{equation}"
+conditions = ["w(0) = 0", "{condition}"]
+"""
+
+
+def test_what_cancels_or_filters_in_fields_and_conditions_is_a_mode_of_the_model():
+    damped, end = "EA*(1 + eta*s)*w'' = rhoA*s^2*w", "EA*(1 + eta*s)*w'(l) = F"
+    for equation, condition in (
+        (damped, end + " + P*d"),
+        (damped, end + "*(1 + 0*P*C)"),
+        (damped, "EA*(1 + eta*s)*w'(l)*P*C = F*P*C"),
+        (damped + " - P*d", end),
+        (damped.replace("eta", "eta*(1 + P*C - P*C)"), end),
+    ):
+        tf = pipeline.derive_all(pipeline.loads(ROD.format(equation=equation, condition=condition)))[0]
+        found = [(str(h.polynomial), h.multiplicity) for h in tf.hidden if "- 1" in str(h.polynomial)]
+        assert found == ([] if "0*P" in condition else [("s - 1", 1)]), (equation, condition)
+
+
+def test_poles_of_entries_and_parameters_of_blocks_are_their_own_states():
+    for block, visible in (
+        ('{ type = "ss", A = [[-1]], B = ["P*C"], C = [1] }', [-2, -1]),
+        ('{ type = "ss", A = [[-1]], B = [1], C = ["P*C"] }', [-2, -1]),
+        ('{ type = "ss", A = [["-1 + P*C"]], B = [1], C = [1] }', sorted(np.roots([1, 3, 1]))),
+        ('{ type = "ss", A = [[-1]], B = [1], C = [1], D = "P*C" }', [-2, -1]),
+        ('{ type = "pid", k_p = "P*C" }', [-2]),
+        ('{ type = "pid", k_p = 1, k_i = "P*C" }', [-2, 0]),
+        ('{ type = "integrator", k = "P*C" }', [-2, 0]),
+        ('{ type = "lag", T = 4, k = "P*C" }', [-2, -0.25]),
+        ('{ type = "low_pass", omega = 2, zeta = 1, k = "P*C" }', [-2, -2, -2]),
+    ):
+        text = f"""symflex = 1
+signals = {{ y = "G*r" }}
+inputs = {{ r = {{}} }}
+outputs = {{ Y = "y" }}
+[blocks]
+P = "1/(s - 1)"
+C = "(s - 1)/(s + 2)"
+G = {block}
+"""
+        found, unseen = poles_of(text)
+        assert unseen == [1], block
+        assert found == pytest.approx(visible, abs=1e-8), block
+
+
+def test_nothing_is_connected_through_a_gain_of_zero():
+    tf, found = hidden(signals='y = "r/(s + 2) + 0*P*C*r"')
+    assert (tf.order, found) == ((0, 1), [])
+    tf, found = hidden(signals='y = "K*r"', blocks='K = { type = "pid", k_p = 3, k_i = 0 }')
+    assert (tf.order, found) == ((0, 0), [])
