@@ -1,7 +1,8 @@
 """Units of measurement: exact factors to SI, the table of symbols, and the prefixes.
 
 Sources: BIPM, The International System of Units, 9th edition (2019; prefixes of 2022), tables 4, 7 and 8;
-NIST Special Publication 811 (2008), appendix B, for the inch, pound, and what follows from them.
+NIST Special Publication 811 (2008), appendix B, for the inch, pound, and what follows from them, for columns
+of mercury and water (13595.1 and 1000 kg/m^3, conventional), the calorie (thermochemical) and the Btu_IT.
 """
 
 from __future__ import annotations
@@ -119,6 +120,11 @@ _POUND: Final = _KG.scaled(Fraction("0.45359237"))
 _OUNCE: Final = _POUND.scaled(Fraction(1, 16))
 _LBF: Final = _POUND * _GRAVITY
 _PSI: Final = _LBF / _INCH**2
+_GALLON: Final = (_INCH**3).scaled(Fraction(231))  # of the US
+_WATER: Final = _GRAVITY * (_KG / _M**3).scaled(Fraction(1000))
+_MERCURY: Final = _GRAVITY * (_KG / _M**3).scaled(Fraction("13595.1"))
+_CALORIE: Final = _J.scaled(Fraction("4.184"))
+_MILLI: Final = Fraction(1, 1000)
 
 PREFIXABLE_UNITS: Final[dict[str, Unit]] = {
     "m": _M,
@@ -156,6 +162,10 @@ PREFIXABLE_UNITS: Final[dict[str, Unit]] = {
     "gf": _KG.scaled(Fraction(1, 1000)) * _GRAVITY,
     "deg": _DEG,
     "rpm": _CYCLE / _MIN,
+    "Torr": _PA.scaled(Fraction(101_325, 760)),
+    "P": (_PA * _S).scaled(Fraction(1, 10)),
+    "St": (_M**2 / _S).scaled(Fraction(1, 10_000)),
+    "cal": _CALORIE,
 }
 
 PLAIN_UNITS: Final[dict[str, Unit]] = {
@@ -188,6 +198,22 @@ PLAIN_UNITS: Final[dict[str, Unit]] = {
     "psi": _PSI,
     "ksi": _PSI.scaled(Fraction(1000)),
     "hp": (_FOOT * _LBF / _S).scaled(Fraction(550)),
+    "thou": _INCH.scaled(_MILLI),
+    "Mpsi": _PSI.scaled(Fraction(1_000_000)),
+    "mmHg": _M.scaled(_MILLI) * _MERCURY,
+    "inHg": _INCH * _MERCURY,
+    "mmH2O": _M.scaled(_MILLI) * _WATER,
+    "cmH2O": _M.scaled(Fraction(1, 100)) * _WATER,
+    "inH2O": _INCH * _WATER,
+    "gal": _GALLON,
+    "gpm": _GALLON / _MIN,
+    "lpm": _LITRE / _MIN,
+    "cfm": _FOOT**3 / _MIN,
+    "cc": _LITRE.scaled(_MILLI),
+    "mph": _FOOT.scaled(Fraction(5280)) / _HOUR,
+    "rps": _CYCLE / _S,
+    "gauss": (_WB / _M**2).scaled(Fraction(1, 10_000)),
+    "Btu": _J.scaled(Fraction("1055.05585262")),
 }
 
 UNITS: Final[dict[str, Unit]] = PREFIXABLE_UNITS | PLAIN_UNITS
@@ -224,19 +250,27 @@ _INSTEAD: Final[dict[str, str]] = {
         "rev": "revs revolution revolutions turn turns r tr U",
         "deg/s": "dps",
         "S": "mho mhos",
-        "rev/s": "rps",
         "cycle": "cycles cyc",
         "g_n": "g_0 g0 gn",
         "%": "percent",
-        "cm^3": "cc ccm",
-        "L/min": "lpm",
-        "mPa*s": "cP",
+        "cc": "ccm",
+        "psi": "psia psig",
+        "gpm": "GPM",
+        "lpm": "LPM slpm",
+        "cfm": "CFM scfm",
+        "kgf": "kp kilopond",
+        "gauss": "Gauss",
+        "Torr": "torr",
+        "in/s": "ips",
+        "Btu": "BTU",
     }.items()
     for written in many.split()
 } | {
-    "gpm": "write it in L/min: a US gallon is 3.785411784 L",
-    "G": "a prefix needs a unit, as in 'GPa'; a gauss is 0.1 mT",
-    "gauss": "write it in mT: a gauss is 0.1 mT",
+    "G": "a prefix needs a unit, as in 'GPa'; a gauss is 0.1 mT, or 'gauss'",
+    "Arms": "write it in 'A': an rms ampere is sqrt(2) A at the peak",
+    "Vrms": "write it in 'V': an rms volt is sqrt(2) V at the peak",
+    "Apk": "did you mean 'A'?",
+    "Vpk": "did you mean 'V'?",
     "Oe": "write it in A/m: an oersted is 1000/(4*pi) A/m",
     "lbs": "did you mean 'lb' (mass) or 'lbf' (force)?",
     "pi": "write pi before the unit, as in '2*pi rad/s'",

@@ -41,7 +41,7 @@ A/kHz mA/gf"""
 SLIPS = """lb/in N/m lbf/in, oz*in N*m ozf*in, kg*cm N*m kgf*cm, g m/s^2 g_n, V/g V*s^2/m V/g_n, g/mm
 N/m gf/mm, lbf kg lb, S s s, 1/S 1/s 1/s, nm N*m N*m, T kg t, C K K, K Ohm kOhm, m H mH, m s -, kg s -,
 N/m kg -"""
-SUFFIXES = """1k kOhm, 100n nF, 4k7 kOhm, 2.2u uF, 1Meg MOhm, 3M MOhm, 10p pF, 5G 0.1_mT, 3gauss 0.1_mT,
+SUFFIXES = """1k kOhm, 100n nF, 4k7 kOhm, 2.2u uF, 1Meg MOhm, 3M MOhm, 10p pF, 5G 0.1_mT, 3Gauss gauss,
 2Oe A/m, 9r/min rev, 5dps deg/s, 20PSI psi, 5Kgf kgf, 2RPM rpm, 3mho 'S', 20degC 'K', 2_deg_C/W 'K',
 4_J/deg_F 'K', 1_\u00b0\u00b7C 'K', 7_W/(m*deg_K) 'K'"""
 

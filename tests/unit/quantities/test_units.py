@@ -35,7 +35,12 @@ PINT_UNITS = {
     "g_n": "standard_gravity", "dyn": "dyne", "atm": "standard_atmosphere", "in": "inch", "inch": "inch",
     "mil": "thou", "ft": "foot", "yd": "yard", "mi": "mile", "lb": "pound", "lbm": "pound", "oz": "ounce",
     "slug": "slug", "lbf": "force_pound", "ozf": "force_ounce", "kip": "kip", "psi": "psi", "ksi": "ksi",
-    "hp": "horsepower",
+    "hp": "horsepower", "Torr": "torr", "P": "poise", "St": "stokes", "cal": "calorie", "thou": "thou",
+    "Mpsi": "megapsi", "mmHg": "millimeter_Hg", "inHg": "inch_Hg",
+    "mmH2O": "centimeter_H2O*millimeter/centimeter", "cmH2O": "centimeter_H2O",
+    "inH2O": "inch_H2O", "gal": "gallon", "gpm": "gallon/minute",
+    "lpm": "liter/minute", "cfm": "foot^3/minute", "cc": "cubic_centimeter", "mph": "mile/hour",
+    "rps": "turn/second", "gauss": "millitesla*decitesla/tesla", "Btu": "Btu_it",
 }  # fmt: skip
 
 BASE_OF_PINT = {
@@ -185,7 +190,8 @@ def test_an_unknown_unit_brings_a_hint():
         ("KN", "kN"), ("Kg", "kg"), ("KG", "kg"), ("MPA", "MPa"), ("mpa", "mPa"), ("khz", "kHz"),
         ("HZ", "Hz"), ("RPM", "rpm"), ("sec", "s"), ("ohms", "Ohm"), ("kohms", "kohm"), ("Nkg", "N*kg"),
         ("m5", "m^5"), ("kgg", "kg"), ("rads", "rad"), ("Pas", "Pa*s"), ("inches", "in"), ("degrees", "deg"),
-        ("micron", "um"), ("Kgm2", "kgm2"), ("KNm", "kNm"), ("Volt", "V"), ("cP", "mPa*s"),
+        ("micron", "um"), ("Kgm2", "kgm2"), ("KNm", "kNm"), ("Volt", "V"), ("psig", "psi"),
+        ("GPM", "gpm"), ("mmhg", "mmHg"), ("torr", "Torr"),
     ]:  # fmt: skip
         assert unit_hint(written) == f"did you mean '{meant}'?", written
 
