@@ -846,6 +846,7 @@ def _gain(given: Stated | None, parameter: ModelParameter) -> Fraction | None:
         return None if given is None or isinf(given) else exact(given)
     if given.strip().lower() in UNBOUNDED:
         return None
+    from symflex.model.settings import value_in_unit
     from symflex.quantities import unit_of
 
     wrong = refused(f"--range takes values such as 0, 1e4 or inf, found '{given[:60]}'")
@@ -854,10 +855,9 @@ def _gain(given: Stated | None, parameter: ModelParameter) -> Fraction | None:
     if quantity.unit and quantity.dimension != dimension:
         own = f"is in '{parameter.unit}'" if parameter.unit else "is a number without a unit"
         raise UsageError(Diagnostic("SF203", f"'{parameter.name}' {own}, the range is in '{quantity.unit}'"))
-    number, pi_power = quantity.cyclic() if parameter.cycles else quantity.angular()
-    if pi_power:
+    if quantity.pi_power:
         raise wrong
-    return number
+    return value_in_unit(parameter, quantity).nearly
 
 
 def _quantity(given: str, flag: str, wrong: UsageError) -> Quantity:

@@ -6,13 +6,13 @@ Whether the names of a printed formula are known is told from its tree.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import islice
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE
-from symflex.errors import Diagnostic, Span, Text, nearest
+from symflex.errors import Diagnostic, Span, Text, UsageError, nearest
 from symflex.expressions import (
     FUNCTIONS,
     Attribute,
@@ -25,10 +25,11 @@ from symflex.expressions import (
     names_among,
     nodes,
     parse,
-    product_of,
+    sum_of,
 )
 from symflex.model.model import PI_NEARLY, TRANSFORMER_SYMBOLS, Analysis, DrawingHints, Figure, Published
 from symflex.model.scope import COMPARED_NAMES, LISTED_NAMES, RESERVED
+from symflex.model.settings import value_in_unit
 from symflex.model.signs import Line
 from symflex.model.spec import ArrayValue, BooleanValue, KeyValue, NumberValue, TableValue, Value
 from symflex.quantities import IMAGINARY_NAMES, Quantity, unit_of
@@ -322,8 +323,11 @@ def _end(reader: Reader, item: Value, gain: ModelParameter) -> Fraction | None:
         message = f"'{gain.name}' is in '{gain.unit or 1}', the range is in '{quantity.unit}'"
         reader.note("SF203", message, item.span)
         return None
-    number, pi_power = quantity.cyclic() if gain.cycles else quantity.angular()
-    return number * PI_NEARLY**pi_power
+    try:
+        return value_in_unit(gain, quantity).nearly
+    except UsageError as error:
+        reader.take(replace(d, span=item.span) for d in error.diagnostics)
+        return None
 
 
 def _kind(reader: Reader, table: TableValue, entry: KeyValue, what: str) -> str:
@@ -381,7 +385,7 @@ def in_own_names(analysis: Analysis) -> Published:
     """Return the names in which formulas are printed as lines of a formula, which are read alike."""
     lines = analysis.print
     return Published(
-        ("", ""), product_of([Name(n, span=e.span) for n, e in lines]), lines, product_of(analysis.prefer)
+        ("", ""), sum_of([Name(n, span=e.span) for n, e in lines]), lines, sum_of(analysis.prefer)
     )
 
 

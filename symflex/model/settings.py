@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING
 from symflex.errors import Diagnostic, ModelError, Source, Span, Text, UsageError, nearest, refused
 from symflex.expressions import substitute
 from symflex.model.declarations import DeclaredParameter, one_of, without_sign
-from symflex.model.model import ExactValue, Model, ModelParameter, rewritten
+from symflex.model.model import ONE, ExactValue, Model, ModelParameter, rewritten
 from symflex.model.units import exact_expression
-from symflex.quantities import DIMENSIONLESS, Quantity, parse_quantity
+from symflex.quantities import DIMENSIONLESS, Quantity, parse_quantity, unit_of
 
 if TYPE_CHECKING:
     from symflex.model.reading import Reader
@@ -89,7 +89,8 @@ def _settled(reader: Reader, parameter: DeclaredParameter, given: Setting) -> De
             reader.note("SF203", f"{declared}, the value given is in '{quantity.unit}'", text.span)
             return parameter
         turns = [q.cycles + q.radians for q in (own, quantity)]
-        if (own.cycles or quantity.cycles) and turns[0] != turns[1]:
+        is_zero = not quantity.unit and not quantity.magnitude
+        if (own.cycles or quantity.cycles) and turns[0] != turns[1] and not is_zero:
             # Whether 60 is 60 Hz or 60 rad/s, and 1 mm one per turn or per radian, nobody can tell.
             what = f"is in '{quantity.unit}'" if quantity.unit else "has no unit"
             hint = f"give it in a unit that counts turns, such as '{own.unit or quantity.unit}'"
@@ -101,6 +102,23 @@ def _settled(reader: Reader, parameter: DeclaredParameter, given: Setting) -> De
         reader.take((problem,))
         return parameter
     return replace(parameter, quantity=quantity, has_unit=bool(quantity.unit) or parameter.has_unit)
+
+
+def value_in_unit(parameter: ModelParameter, quantity: Quantity) -> ExactValue:
+    """Return a quantity in the unit of a parameter's value; SF203 if it has another, or needs one."""
+    wanted = unit_of(parameter.unit) if parameter.unit else None
+    if quantity.unit and wanted is not None and quantity.dimension != wanted.dimension:
+        message = f"'{parameter.name}' is in '{parameter.unit}', the value given in '{quantity.unit}'"
+        raise UsageError(Diagnostic("SF203", message))
+    if parameter.cycles and not quantity.unit and quantity.magnitude and parameter.scale != ONE:
+        message = f"'{parameter.name}' is declared in '{parameter.written_unit}', the value given has no unit"
+        hint = f"give it with its unit, such as '{parameter.written_unit}'"
+        raise UsageError(Diagnostic("SF203", message, None, hint))
+    turns = parameter.cycles
+    if turns and quantity.cycles != turns and quantity.radians == turns:  # "314 rad/s" for what is in Hz
+        return ExactValue(quantity.magnitude / Fraction(2) ** turns, quantity.pi_power - turns)
+    angular = not turns and (wanted is None or bool(wanted.radians))
+    return ExactValue(*(quantity.angular() if angular else quantity.cyclic()))
 
 
 def check_free(parameter: ModelParameter) -> None:

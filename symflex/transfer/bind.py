@@ -29,8 +29,8 @@ from symflex.expressions import format_expression, names
 from symflex.model import ExactValue, Model, ModelParameter, with_numbers
 from symflex.model.along import COORDINATE
 from symflex.model.declarations import assuming
-from symflex.model.settings import check_free, exact_number
-from symflex.quantities import parse_quantity, unit_of
+from symflex.model.settings import check_free, exact_number, value_in_unit
+from symflex.quantities import parse_quantity
 from symflex.transfer.against_equations import compare
 from symflex.transfer.agreement import agreement
 from symflex.transfer.bound import BoundTransferFunction, radicals_at
@@ -102,16 +102,7 @@ def _read_value(
     if isinstance(given, ExactValue):
         return given
     if isinstance(given, str):
-        quantity = parse_quantity(Text.alone("<value>", given))
-        wanted = unit_of(parameter.unit) if parameter.unit else None
-        if quantity.unit and wanted is not None and quantity.dimension != wanted.dimension:
-            message = f"'{parameter.name}' is in '{parameter.unit}', the value given in '{quantity.unit}'"
-            raise UsageError(Diagnostic("SF203", message))
-        if parameter.cycles and quantity.cycles != parameter.cycles and quantity.radians == parameter.cycles:
-            turns = parameter.cycles  # "314 rad/s" for what is in Hz
-            return ExactValue(quantity.magnitude / Fraction(2) ** turns, quantity.pi_power - turns)
-        angular = not parameter.cycles and (wanted is None or bool(wanted.radians))
-        return ExactValue(*(quantity.angular() if angular else quantity.cyclic()))
+        return value_in_unit(parameter, parse_quantity(Text.alone("<value>", given)))
     return ExactValue(exact_number(parameter.name, given))
 
 
