@@ -19,6 +19,7 @@ from symflex.options import AuditOptions, CheckOptions, DeriveOptions, ExportOpt
 
 if TYPE_CHECKING:
     from symflex.codegen.export import Exporter
+    from symflex.model import ModelParameter
 
 TARGETS_MEANT = {  # export targets by other names
     "python": "numpy",
@@ -38,8 +39,8 @@ def check(spec: Specification, given: CheckOptions) -> int:
     analytic.
 
     Warnings point to possible typing errors: a node that only one element touches, a name that nothing uses,
-    an input that reaches nothing, an element without effect. They also say whether a frequency was read in
-    cycles or in radians where both are possible. All other commands end with the number of warnings.
+    an input that reaches nothing, an element without effect. All other commands end with the number of
+    warnings. What was declared in cycles and is used in radians is listed.
     """
     from symflex import pipeline
 
@@ -66,6 +67,7 @@ def check(spec: Specification, given: CheckOptions) -> int:
             "problems": [],
             "warnings": [diagnostic_json(w) for w in warnings],
             "transfer_functions": names,
+            "conversions": [_conversion_json(p) for p in model.conversions],
         }
         if given.equations:
             from symflex.print.motion import motion_json
@@ -96,11 +98,33 @@ def check(spec: Specification, given: CheckOptions) -> int:
     say(listed("transfer functions: ", names))
     if symbolic:
         say(listed("symbolic (no value): ", symbolic))
+    for parameter in model.conversions:
+        say(f"  {_conversion(parameter)}")
     if given.equations:
         from symflex.print.motion import motion_text
 
         say(motion_text(model))
     return code
+
+
+def _conversion(parameter: ModelParameter) -> str:
+    """Return what a parameter in cycles is used as: ``Omega = 3000 rpm, used as 314.159 rad/s``."""
+    value, unit = parameter.as_written()
+    if value is None or parameter.value is None:
+        return f"{parameter.name} in {unit}, used in {parameter.unit}"
+    written, used = (f"{float(x.nearly):.6g}" for x in (value, parameter.value))
+    return f"{parameter.name} = {written} {unit}, used as {used} {parameter.unit}"
+
+
+def _conversion_json(parameter: ModelParameter) -> dict[str, object]:
+    value, unit = parameter.as_written()
+    return {
+        "name": parameter.name,
+        "declared": None if value is None else float(value.nearly),
+        "declared_unit": unit,
+        "value": None if parameter.value is None else float(parameter.value.nearly),
+        "unit": parameter.unit,
+    }
 
 
 LONG = 5_000  # terms beyond which a print is announced: it takes seconds, or minutes

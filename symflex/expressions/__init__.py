@@ -33,6 +33,7 @@ from symflex.expressions.nodes import (
     replace_values,
     substitute,
     sum_of,
+    with_children,
 )
 from symflex.expressions.parse import parse, parse_equation
 from symflex.expressions.slips import FUNCTIONS, RECIPROCALS

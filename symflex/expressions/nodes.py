@@ -427,11 +427,12 @@ def _replaced(expression: Expression, new: Callable[[Expression], Expression]) -
             after = done[-len(before) :]
             del done[-len(before) :]
             is_same = all(old is new for old, new in zip(before, after, strict=True))
-            done.append(node if is_same else _rebuilt(node, after))
+            done.append(node if is_same else with_children(node, after))
     return done[0]
 
 
-def _rebuilt(node: Expression, children: Sequence[Expression]) -> Expression:
+def with_children(node: Expression, children: Sequence[Expression]) -> Expression:
+    """Return a node with other operands, at its place in the text; sums and products stay flat."""
     span = node.span
     match node:
         case Sum():

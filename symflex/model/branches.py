@@ -41,6 +41,7 @@ from symflex.expressions import (
     sum_of,
 )
 from symflex.library.blocks import DECAY, ROOT
+from symflex.model.linearity import rational_exponent
 from symflex.model.model import PlacedBlock, rewritten
 
 if TYPE_CHECKING:
@@ -105,7 +106,9 @@ def _radical(node: Expression) -> Radical | None:
     match node:
         case Call("sqrt", argument, 0):
             exponent = Fraction(1, HALF)
-        case Power(argument, written) if (found := _number(written)) is not None and found.denominator > 1:
+        case Power(argument, written) if (
+            found := rational_exponent(written)
+        ) is not None and found.denominator > 1:
             exponent = found
         case _:
             return None
@@ -130,19 +133,6 @@ def _factor(radical: Radical, base: Expression) -> Expression | None:
     parts = (scale.numerator, scale.denominator) if isinstance(scale, Quotient) else (scale, number(1))
     above, below = (x if is_number(x, 1) else Call("sqrt", x) for x in parts)
     return power(quotient(above, below), int(2 * exponent)) if exponent.denominator == HALF else None
-
-
-def _number(expression: Expression) -> Fraction | None:
-    """Return the value of a literal such as 0.5, 3/2 or -1/2."""
-    match expression:
-        case Number(value):
-            return value
-        case Negative(operand):
-            inner = _number(operand)
-            return None if inner is None else -inner
-        case Quotient(Number(above), Number(below)) if below:
-            return above / below
-    return None
 
 
 def per(expression: Expression, name: str) -> tuple[Expression, int] | None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from enum import Enum
 from fractions import Fraction
 from math import pi
 from typing import cast
@@ -39,14 +38,6 @@ SHOWN_CIRCLE = 8  # names of a circle of definitions that a message lists
 ASSUMPTIONS = ("positive", "nonnegative", "real")
 
 
-class CycleReading(Enum):
-    """How a unit's cycles are meant: as they are (CYCLES), times 2 pi (TURNED) or as radians (CONVERTED)."""
-
-    CYCLES = "cycles"
-    TURNED = "turned"
-    CONVERTED = "converted"
-
-
 @dataclass(frozen=True, slots=True)
 class DeclaredParameter:
     """A parameter as written: its quantity still counts cycles; ``None`` when symbolic."""
@@ -74,20 +65,17 @@ class DeclaredParameter:
             return one_of(self.unit_text) if self.unit_text else None
         return self.quantity if self.has_unit else None
 
-    def resolve(self, reading: CycleReading, implied_unit: str) -> ModelParameter:
-        """Return the parameter in SI units, in cycles or in radians as it was read."""
+    def resolve(self, implied_unit: str = "", *, is_converted: bool = False) -> ModelParameter:
+        """Return the parameter in SI units; what counts cycles does so still, unless it is converted."""
         unit, measured = implied_unit, self.measured
-        is_converted = reading is CycleReading.CONVERTED
         nominal = [self.quantity] if self.quantity is not None else []
         read = Quantity.angular if is_converted else Quantity.cyclic
         exact = [ExactValue(*read(q)) for q in (*nominal, *(self.limits or ()))]
         value = exact[0] if nominal else None
         limits = (exact[-2], exact[-1]) if self.limits else None
-        if measured is not None and (
-            self.quantity is None or reading is CycleReading.TURNED or not implied_unit
-        ):
-            unit = _unit_text(measured, reading)
-        cycles = measured.cycles if measured is not None and reading is not CycleReading.CONVERTED else 0
+        cycles = measured.cycles if measured is not None and not is_converted else 0
+        if measured is not None and (self.quantity is None or cycles or not implied_unit):
+            unit = _unit_text(measured, is_converted=is_converted)
         written = self.written_unit
         scale = _scale(written, is_converted=measured is not None and measured.cycles != cycles)
         # What is one in SI units keeps the name it was given: A*s/rad is no C/rad.
@@ -141,14 +129,14 @@ def _scale(written: str, *, is_converted: bool) -> ExactValue:
     return ExactValue(*(quantity.angular() if is_converted else quantity.cyclic()))
 
 
-def _unit_text(quantity: Quantity, reading: CycleReading) -> str:
+def _unit_text(quantity: Quantity, *, is_converted: bool) -> str:
     """Return the SI unit, with rad or rev where the declared unit turned."""
     turns, turn, text = quantity.radians, "rad", str(quantity.dimension)
-    if reading is CycleReading.CONVERTED:
+    if is_converted:
         turns += quantity.cycles
     elif (quantity.cycles, text) == (1, "1/s"):
         return "Hz"
-    elif reading is CycleReading.TURNED:
+    elif quantity.cycles:
         turns, turn = quantity.cycles, "rev"
     if abs(turns) > 1 and turn == "rev":
         turn = f"{turn}^{abs(turns)}"

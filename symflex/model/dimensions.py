@@ -1,4 +1,4 @@
-"""Units: what every expression is measured in, what free signals must be, and whether Hz means 2 pi rad/s.
+"""Units: what every expression is measured in, and what free signals must be.
 
 Dimensions of signals and free inputs are unknowns of linear equations over the exponents of the SI base
 units (a product adds exponents), solved exactly; an equation that contradicts the others is an error at its
@@ -10,21 +10,11 @@ gain, a pole or a time it may have a unit:
     F + 2*x                     refused: N and m
     (s + 2)*x, F - 0.1*s*x      read as they stand: 2 is in 1/s, 0.1 in N*s/m
     u = 100*x - 3*motor.i       read as it stands: every term has a gain
-
-Hz, rpm and rev count cycles. A value in them is angular (2 pi enters, exactly) where an angular quantity is
-needed or where it is added to terms in s; it is left as cycles where the expression converts it itself with a
-factor pi (``2*pi*f``) or where a time is needed (``1/f``). One parameter must be read one way throughout.
-
-    s + f_c         read as s + 2*pi*f_c        inferred: warned of, and printed with the 2 pi
-    s + 2*pi*f_c    read as it stands           said by the expression
-    omega_p = f_c   read as 2*pi*f_c            said by the port, which is in rad/s; printed with the 2 pi
-    T = 1/f_c       read as it stands           inferred: warned of; in 3*T*s and K/T as well
-    f_c/f_s         read as it stands           both must be read alike elsewhere
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -50,17 +40,12 @@ from symflex.expressions import (
     names,
     names_among,
     nodes,
-    number,
-    power,
-    product_of,
-    quotient,
     substitute,
 )
 from symflex.library.elements import LUMPED, Variable
-from symflex.model.declarations import CycleReading
 from symflex.model.linearity import integer_exponent
 from symflex.model.reading import QuantityLiteral
-from symflex.model.scope import LISTED_NAMES, ModelScope
+from symflex.model.scope import ModelScope
 from symflex.quantities import DIMENSIONLESS, Dimension, Quantity, unit_of, unit_slip
 
 Solution = tuple[tuple[tuple[Variable, Fraction], ...], Dimension]
@@ -84,11 +69,6 @@ class Measure:
     written: int = 0  # 1 when a written number takes part, TIMED when it must be a pole or a time
     weight: int = 0  # 1 when names take part, PARAMETER when one of them is a parameter with a unit
     laplace: Fraction = Fraction(0)  # exponent of a written s
-    # cycles and pis: exponents of the cycle and of a written ``pi``.
-    cycles: Fraction = Fraction(0)
-    pis: Fraction = Fraction(0)
-    periods: Fraction = Fraction(0)  # exponent of the cycles that are read as they stand, in 1/f
-    cyclic: frozenset[str] = frozenset()  # parameters given in cycles that take part
 
     def times(self, other: Measure) -> Measure:
         """Return the measure of a product."""
@@ -102,10 +82,6 @@ class Measure:
             max(self.written, other.written),
             max(self.weight, other.weight),
             self.laplace + other.laplace,
-            self.cycles + other.cycles,
-            self.pis + other.pis,
-            self.periods + other.periods,
-            self.cyclic | other.cyclic,
         )
 
     @property
@@ -131,7 +107,7 @@ class Measure:
     @property
     def is_extreme(self) -> bool:
         """Tell whether an exponent is larger than any meant in earnest."""
-        exponents = (*self.dimension.exponents, *(e for _, e in self.unknowns), self.cycles, self.pis)
+        exponents = (*self.dimension.exponents, *(e for _, e in self.unknowns))
         return any(max(abs(e.numerator), e.denominator) > EXTREME_EXPONENT for e in exponents)
 
     def power(self, exponent: Fraction | int) -> Measure:
@@ -142,9 +118,6 @@ class Measure:
             dimension=self.dimension**e,
             unknowns=tuple((v, x * e) for v, x in self.unknowns),
             laplace=self.laplace * e,
-            cycles=self.cycles * e,
-            pis=self.pis * e,
-            periods=self.periods * e,
         )
 
 
@@ -162,26 +135,6 @@ class Pair:
     def ratio(self) -> Measure:
         """What should be a pure number."""
         return self.second[1].times(self.first[1].power(-1))
-
-
-@dataclass(frozen=True, slots=True)
-class Use:
-    """One use of a parameter given in cycles: angular or not, whether its place left that open, and where."""
-
-    angular: bool
-    inferred: bool
-    span: Span | None
-
-
-def turned_name(name: str, cycles: int) -> Expression:
-    """Return a name with the 2 pi that make its cycles radians.
-
-    >>> from symflex.expressions import format_expression
-    >>> [format_expression(turned_name("f", n)) for n in (1, 2, -1)]
-    ['2*pi*f', '4*pi^2*f', 'f/(2*pi)']
-    """
-    two_pi = [number(2 ** abs(cycles)), power(Name("pi"), abs(cycles))]
-    return product_of([*two_pi, Name(name)]) if cycles > 0 else quotient(Name(name), product_of(two_pi))
 
 
 class DimensionSystem:
@@ -205,8 +158,6 @@ class DimensionSystem:
         self._blocks = dict(blocks)
         self._laplace = laplace
         self._solved: dict[Variable, Solution] = {}
-        self._uses: dict[str, list[Use]] = {}
-        self._ratios: list[tuple[tuple[str, ...], Span | None]] = []
         self._defined: dict[str, Measure] = {}
         # The measure of x, by what varies along it.
         self._axes = dict.fromkeys(scope.along, Measure(unit_of("m").dimension))
@@ -229,17 +180,9 @@ class DimensionSystem:
         self._coordinate = Measure(unit_of("m").dimension) if varies else None
         measure = self.measure(expression)
         self._coordinate = None
-        if not unit:
-            self._read_cycles(measure, None, expression.span)
+        if not unit or measure.open or _is_constant(expression):
             return
         wanted = unit_of(unit)
-        # N m/A is V s/rad: a gain per turn that is given as it stands is per radian wherever that fits.
-        turns = [q.cycles for n in measure.cyclic if (q := self._quantities.get(n)) is not None]
-        is_gain = isinstance(expression, Name) and measure.cycles < 0 and max(turns, default=0) < 0
-        is_gain = is_gain and wanted.dimension != SECOND
-        self._read_cycles(measure, bool(wanted.radians) or is_gain, expression.span, wanted.dimension)
-        if measure.open or _is_constant(expression):
-            return
         reduced = self._reduce(measure.times(Measure(wanted.dimension).power(-1)))
         if not self._learn(reduced) and not (reduced.written == TIMED and reduced.is_time):
             given = self._reduce(measure).dimension
@@ -247,14 +190,9 @@ class DimensionSystem:
             hint = self._declaration(expression, given, wanted.dimension)
             self._note("SF203", message, expression.span, hint)
 
-    def read(self, expression: Expression) -> None:
-        """Take an expression as whole: nothing around it tells how cycles in it are meant."""
-        self._read_cycles(self.measure(expression), None, expression.span)
-
     def equate(self, variable: Variable, expression: Expression) -> None:
         """Demand that a signal is measured as its expression is."""
         measure = self.measure(expression)
-        self._read_cycles(measure, None, expression.span)
         if measure.open or _is_constant(expression):
             return
         left = self.variable(variable)
@@ -284,12 +222,11 @@ class DimensionSystem:
         terms = [t for side in whole.children for t in (side.terms if isinstance(side, Sum) else (side,))]
         self._coordinate = self._axes[unknowns[0]] if unknowns else None
         before = len(self.problems)
-        measure = self._sum(Sum(tuple(terms), span=equation.span), tuple(terms), is_equation=True)
+        self._sum(Sum(tuple(terms), span=equation.span), tuple(terms), is_equation=True)
         self._coordinate = None
         if any(d.code == "SF203" for d in self.problems[before:]):
             # What stands beside a function of a wrong argument disagrees for that reason alone.
             self.problems[before:] = [d for d in self.problems[before:] if d.code != "SF205"]
-        self._read_cycles(measure, None, equation.span)
 
     def dimension(self, measure: Measure) -> Dimension | None:
         """Return the dimension when it is known by now."""
@@ -326,68 +263,6 @@ class DimensionSystem:
             hint = f"an 's' may be missing; {hint}" if pair.may_lack else hint
         self._note("SF205", message, term.span or pair.whole.span, hint)
 
-    def finish(self) -> Mapping[str, CycleReading]:
-        """Return how every parameter given in cycles is read; contradictions become problems."""
-        angular = {name: uses[0] for name, uses in self._uses.items()}
-        for name, uses in self._uses.items():
-            other = next((u for u in uses if u.angular != uses[0].angular), None)
-            if other is not None:
-                self._note_contradiction(name, uses[0], name, other)
-        for among, span in self._ratios:
-            used = [(name, angular[name]) for name in among if name in angular]
-            for name, use in used:
-                if use.angular != used[0][1].angular:
-                    self._note_contradiction(used[0][0], used[0][1], name, replace(use, span=span))
-            if used:
-                use = replace(used[0][1], inferred=False)
-                angular = {**dict.fromkeys(among, use), **angular}
-        counted = {name: q for name, q in self._quantities.items() if q is not None and q.cycles}
-        return {name: self._reading(name, q, angular.get(name)) for name, q in counted.items()}
-
-    def _reading(self, name: str, quantity: Quantity, use: Use | None) -> CycleReading:
-        """Return one parameter's reading; what no use decides is angular."""
-        if use is not None and not use.angular:
-            return CycleReading.CYCLES
-        # A pitch in mm/rev at a port in m/rad is converted as mm is to m; a frequency stays what it is.
-        is_converted = quantity.cycles < 0 and not any(u.inferred for u in self._uses.get(name, ()))
-        return CycleReading.CONVERTED if is_converted else CycleReading.TURNED
-
-    def _note_contradiction(self, first: str, one: Use, second: str, other: Use) -> None:
-        place = f" (line {one.span.line})" if one.span else ""
-        words = ("an angular frequency", "cycles")
-        here, there = words if one.angular else words[::-1]
-        message = f"'{first}' is read as {here}{place} and as {there} here"
-        if first != second:
-            message = f"'{first}' is read as {here}{place}, '{second}' as {there}, and here they are compared"
-        hint = "write 2*pi*f wherever an angular frequency is meant, or give the value in rad/s"
-        self._note("SF204", message, other.span, hint)
-
-    def readings(self) -> Iterator[Diagnostic]:
-        """Yield one warning for all uses of a unit whose reading their places left open, at the first."""
-        groups: dict[tuple[bool, str], list[tuple[str, Use]]] = {}
-        for name, uses in self._uses.items():
-            quantity = self._quantities[name]
-            for use in dict.fromkeys(u for u in uses if u.inferred):
-                unit = quantity.unit if quantity is not None else ""
-                groups.setdefault((use.angular, unit), []).append((name, use))
-        for (is_angular, unit), each in groups.items():
-            each.sort(key=lambda pair: pair[1].span.start if pair[1].span else 0)
-            first, quantity = each[0][0], self._quantities[each[0][0]]
-            quoted = [f"'{name}'" for name in dict.fromkeys(name for name, _ in each)]
-            listed = ", ".join([*quoted[:LISTED_NAMES], *["..."][: len(quoted[LISTED_NAMES:])]])
-            shown = format_expression(turned_name(first, quantity.cycles if quantity is not None else 1))
-            places = f"here and elsewhere ({len(each)} places)" if each[1:] else "here"
-            read = f"{listed}, in '{unit}', {'are' if quoted[1:] else 'is'} read"
-            is_frequency = quantity is not None and quantity.dimension == PER_SECOND
-            without = f"give '{first}' in '1/s'" if is_frequency else "give it without turns"
-            if is_angular:
-                message = f"{read} in radians {places}: as {shown}"
-                hint = f"write {shown} to make that clear, or {without} if no 2*pi is meant"
-            else:
-                message = f"{read} in cycles {places}: without 2*pi"
-                hint = f"write {shown} if radians are meant; if not, {without} to make that clear"
-            yield Diagnostic("SF655", message, each[0][1].span, hint, "warning")
-
     def measure(self, expression: Expression) -> Measure:
         """Return what an expression is measured in; disagreeing sums become problems."""
         match expression:
@@ -407,12 +282,9 @@ class DimensionSystem:
                     result = result.times(self.measure(factor))
                 return result
             case Quotient(numerator, denominator):
-                above, below = self.measure(numerator), self.measure(denominator)
-                is_whole = above.cycles or above.laplace
-                return above.times((below if is_whole else self._inverted(below, expression.span)).power(-1))
+                return self.measure(numerator).times(self.measure(denominator).power(-1))
             case Power(base, exponent) if (value := integer_exponent(exponent)) is not None:
-                below = self.measure(base)
-                return (self._inverted(below, expression.span) if value < 0 else below).power(value)
+                return self.measure(base).power(value)
             case Sum(terms):
                 return self._sum(expression, terms)
             case Call(name, argument, order) if name in self._axes:
@@ -424,15 +296,6 @@ class DimensionSystem:
                 return self._call(name, argument)
             case _:
                 return Measure(open=True)
-
-    def _inverted(self, measure: Measure, span: Span | None) -> Measure:
-        """Return what is divided by: a frequency in cycles as it stands, as its inverse is a period."""
-        if measure.cycles <= 0 or measure.dimension != PER_SECOND**measure.cycles:
-            return measure
-        for name in sorted(measure.cyclic):
-            use = Use(angular=False, inferred=measure.pis != measure.cycles, span=span)
-            self._uses.setdefault(name, []).append(use)
-        return replace(measure, cycles=Fraction(0), pis=Fraction(0), periods=measure.cycles)
 
     def _field(self, name: str, order: int) -> Measure:
         """Return what a field's unknown, differentiated along x, is measured in."""
@@ -446,7 +309,6 @@ class DimensionSystem:
         if point in self._sound_points:
             return
         measure = self.measure(place)
-        self._read_cycles(measure, None, place.span)
         axis, written = self._axes[name], names(place)
         if measure.open or axis.open or any(self._varies(n) for n in written):
             return
@@ -473,7 +335,7 @@ class DimensionSystem:
         if meaning.kind == "laplace":
             return Measure(self._laplace, laplace=Fraction(1))
         if meaning.kind == "pi":
-            return Measure(pis=Fraction(1))
+            return Measure()
         if meaning.kind == "parameter":
             return self._parameter(meaning.name)
         if meaning.kind == "definition":
@@ -493,9 +355,7 @@ class DimensionSystem:
         quantity = self._quantities.get(name)
         if quantity is None:
             return _bare(name) if self._infers else Measure(open=True)
-        cyclic = frozenset({name} if quantity.cycles else ())
-        weight = 1 if quantity.dimension == DIMENSIONLESS else PARAMETER
-        return Measure(quantity.dimension, weight=weight, cycles=Fraction(quantity.cycles), cyclic=cyclic)
+        return Measure(quantity.dimension, weight=1 if quantity.dimension == DIMENSIONLESS else PARAMETER)
 
     def definition(self, name: str) -> Measure:
         """Return what a definition is measured in; a bare number is one as among the parameters."""
@@ -505,7 +365,7 @@ class DimensionSystem:
             measure = self.measure(expression)
             has_unit = not _is_constant(expression) or isinstance(expression, QuantityLiteral)
             if not has_unit and self._infers:
-                self._defined[name] = replace(_bare(name), pis=measure.pis)
+                self._defined[name] = _bare(name)
             elif has_unit and not measure.is_extreme:
                 self._defined[name] = measure
         return self._defined[name]
@@ -531,7 +391,6 @@ class DimensionSystem:
             return Measure(open=True)
         if name == "sqrt":
             return inner.power(Fraction(1, 2))
-        self._read_cycles(inner, True, argument.span)
         reduced = self._reduce(inner)
         is_free = reduced.open or reduced.unknowns or (reduced.written and reduced.is_time)
         if not is_free and reduced.dimension != DIMENSIONLESS:
@@ -545,16 +404,9 @@ class DimensionSystem:
         measures = [(t, self.measure(t)) for t in terms if not is_number(t, 0)]
         if not measures:
             return Measure(open=True)
-        mixed = len({(m.cycles, m.pis, m.periods) if m.cyclic else None for _, m in measures}) > 1
-        if mixed:
-            for term, measure in measures:
-                self._read_cycles(measure, None, term.span)
-        cyclic = frozenset().union(*(m.cyclic for _, m in measures))
         closed = [(t, self._reduce(m)) for t, m in measures if not m.open]
         if not closed:
-            if mixed:
-                return Measure(open=True)
-            return replace(measures[0][1], cyclic=cyclic)
+            return measures[0][1]
         # What is known first: beside it, an unknown of yet unknown unit is not what disagrees.
         first_term, first = min(closed, key=lambda m: (m[1].is_gain, bool(m[1].unknowns), m[1].written))
         others = [m for _, m in closed]
@@ -580,30 +432,7 @@ class DimensionSystem:
                 self._pairs.append(pair)
             elif not self._learn(ratio):
                 self._disagree(pair)
-        result = replace(self._reduce(first), written=written)
-        if mixed:
-            zero = Fraction(0)
-            return replace(result, cycles=zero, pis=zero, periods=zero, cyclic=frozenset())
-        return replace(result, cyclic=cyclic)
-
-    def _read_cycles(
-        self, measure: Measure, angular: bool | None, span: Span | None, wanted: Dimension | None = None
-    ) -> None:
-        """Decide how the cycles in a complete term are meant."""
-        if not measure.cyclic:
-            return
-        if not measure.cycles + measure.periods:
-            self._ratios.append((tuple(sorted(measure.cyclic)), span))
-        if not (measure.cycles and measure.cycles + measure.periods):
-            return
-        is_said = measure.pis == measure.cycles or angular is True
-        is_time = (wanted or measure.dimension) == SECOND
-        is_angular = measure.pis != measure.cycles and (
-            angular is True or not (measure.cycles < 0 and is_time)
-        )
-        for name in sorted(measure.cyclic):
-            if not (measure.periods and any(not u.angular for u in self._uses.get(name, ()))):
-                self._uses.setdefault(name, []).append(Use(is_angular, not is_said, span))
+        return replace(self._reduce(first), written=written)
 
     def _reduce(self, measure: Measure) -> Measure:
         """Replace solved variables by what they were solved for."""
@@ -649,13 +478,14 @@ class DimensionSystem:
         return self._solved[variable]
 
     def _declaration(self, expression: Expression, given: Dimension, wanted: Dimension) -> str | None:
-        if isinstance(expression, Name):
-            quantity = self._quantities.get(expression.name)
-            if quantity is not None:
-                slip = misplaced(quantity.unit, given, wanted)
-                unit = f"in '{quantity.unit}'" if quantity.unit else "as a number"
-                return f"'{expression.name}' is declared {unit}" + (f"; {slip}" if slip else "")
-        return None
+        # A frequency that stands alone has a 2 pi beside it by now.
+        name = expression.span.text if expression.span else ""
+        quantity = self._quantities.get(name)
+        if quantity is None:
+            return None
+        slip = misplaced(quantity.unit, given, wanted)
+        unit = f"in '{quantity.unit}'" if quantity.unit else "as a number"
+        return f"'{name}' is declared {unit}" + (f"; {slip}" if slip else "")
 
 
 def misplaced(unit: str, given: Dimension, wanted: Dimension) -> str | None:

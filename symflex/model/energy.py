@@ -43,16 +43,18 @@ from symflex.model.fields import name_problem, parsed
 from symflex.model.model import NodeReference, OperatingPoint, Signal
 from symflex.model.network import Draft, DraftElement
 from symflex.model.operating_point import NOWHERE, SMOOTH, in_s, linearised, read_operating_point
-from symflex.model.reading import QuantityLiteral, Reader
+from symflex.model.reading import Reader
 from symflex.model.spec import TableValue
-from symflex.model.units import lower
+from symflex.model.units import AsWritten, exact_expression
 
 KEYS = ("coordinates", "kinetic", "potential", "dissipation", "forces", "constraints", "doc")
 EXAMPLE = 'for instance coordinates = ["x"], kinetic = "m*x\'^2/2", potential = "k*x^2/2"'
 SOURCES = {"translation": ("force_source", "f"), "rotation": ("torque_source", "tau")}
 
 
-def read_energy(reader: Reader, section: TableValue | None, taken: Collection[str]) -> tuple[Signal, ...]:
+def read_energy(
+    reader: Reader, section: TableValue | None, taken: Collection[str], cycles: AsWritten
+) -> tuple[Signal, ...]:
     """Return an equation for every coordinate and every constraint; ``taken`` names what is constant."""
     if section is None:
         return ()
@@ -69,9 +71,11 @@ def read_energy(reader: Reader, section: TableValue | None, taken: Collection[st
             reader.note(problem[0], problem[1], text.span, problem[2])
     constraints = section.get("constraints")
     texts = reader.strings(constraints, f"constraints of {what}") if constraints else ()
-    equations = parsed(reader, texts) or ()
+    equations = [
+        replace(e, left=cycles.read(e.left), right=cycles.read(e.right)) for e in parsed(reader, texts) or ()
+    ]
     kinetic, potential, dissipation = (
-        reader.read(partial(parse, brackets=True), reader.text(section, key, what)) or number(0)
+        cycles.read(reader.read(partial(parse, brackets=True), reader.text(section, key, what)) or number(0))
         for key in KEYS[1:4]
     )
     forces = dict[str, Expression]()
@@ -86,7 +90,7 @@ def read_energy(reader: Reader, section: TableValue | None, taken: Collection[st
         elif (
             value := reader.expression(force.value, f"force on '{force.key}'", quantities=False)
         ) is not None:
-            forces[force.key] = value
+            forces[force.key] = cycles.read(value)
     if reader.problems:
         raise SpecError(*reader.problems)  # of unknowns without equation nothing true can be said
 
@@ -139,15 +143,19 @@ def _no_derivative(error: ValueError, span: Span | None) -> SpecError:
 
 
 def with_motion(
-    reader: Reader, sections: Mapping[str, TableValue | None], draft: Draft, taken: Collection[str]
+    reader: Reader,
+    sections: Mapping[str, TableValue | None],
+    draft: Draft,
+    taken: Collection[str],
+    cycles: AsWritten,
 ) -> tuple[Draft, OperatingPoint | None]:
     """Return a draft whose ``[equations]`` and ``[energy]`` are linear, and the point at which they are."""
-    energy = read_energy(reader, sections["energy"], taken)
+    energy = read_energy(reader, sections["energy"], taken, cycles)
     inputs = {d.input.name for d in draft.inputs}
     loads = {x.name for x in (*draft.signals, *energy)} | inputs
     nodes = {r.node for e in draft.elements for _, references in e.nodes for r in references}
     nodes |= {a.reference.node for source in draft.inputs for a in source.attachments()}
-    rest = read_operating_point(reader, sections["operating_point"], taken, loads | nodes)
+    rest = read_operating_point(reader, sections["operating_point"], taken, loads | nodes, cycles)
     if energy:
         rest = rest or NOWHERE
         multipliers = [x.name for x in energy if x.name.startswith("lambda_")]
@@ -165,13 +173,19 @@ def with_motion(
         inputs,
         loads | nodes,
         {**dict.fromkeys(taken), **{d.name: d.expression for d in draft.definitions}},
-        {p.name: lower(QuantityLiteral(p.quantity)) for p in draft.declared if p.quantity is not None},
+        {
+            p.name: exact_expression(value)
+            for p in draft.declared
+            if (value := p.resolve(is_converted=p.name in cycles.eager).value) is not None
+        },
         {p.name for p in draft.declared if p.assume != "positive"},
     )
     declared = []
     for p in draft.declared:
         if p.name in solved and p.quantity is not None:
-            declared.append(replace(p, quantity=replace(p.quantity, magnitude=solved[p.name], pi_power=0)))
+            counted = 0 if p.name in cycles.eager else p.quantity.cycles
+            quantity = replace(p.quantity, magnitude=solved[p.name], pi_power=0, cycles=counted)
+            declared.append(replace(p, quantity=quantity))
         elif all(d.name != p.name for d in found):
             declared.append(p)
     definitions = in_order(reader, [*draft.definitions, *found])

@@ -58,6 +58,19 @@ def integer_exponent(exponent: Expression) -> int | None:
     return None
 
 
+def rational_exponent(exponent: Expression) -> Fraction | None:
+    """Return the value of a literal such as 0.5, 3/2 or -1/2, or ``None``."""
+    match exponent:
+        case Number(value):
+            return value
+        case Negative(operand):
+            inner = rational_exponent(operand)
+            return None if inner is None else -inner
+        case Quotient(Number(above), Number(below)) if below:
+            return above / below
+    return None
+
+
 def factored_of(
     expression: Expression, ring: Ring, name: Callable[[str], Factored] | None = None
 ) -> Factored:

@@ -32,6 +32,10 @@ class ExactValue:
     pi_power: int = 0
     is_imaginary: bool = False
 
+    def __mul__(self, other: ExactValue) -> ExactValue:
+        rational = self.rational * other.rational
+        return ExactValue(rational, self.pi_power + other.pi_power if rational else 0)
+
     @property
     def nearly(self) -> Fraction:
         """The number to 30 digits."""
@@ -90,6 +94,26 @@ class ModelParameter:
             return None, self.written_unit
         of_pi = exact.pi_power - self.scale.pi_power if exact.rational else 0
         return ExactValue(exact.rational / self.scale.rational, of_pi), self.written_unit
+
+    @property
+    def in_radians(self) -> ModelParameter:
+        """The parameter with 2 pi radians for each cycle that it counts."""
+        turn = ExactValue(Fraction(2) ** self.cycles, self.cycles)
+        return replace(
+            self,
+            value=None if self.value is None else self.value * turn,
+            unit="rad/s" if self.unit == "Hz" else self.unit.replace("rev", "rad"),
+            scale=self.scale * turn,
+            cycles=0,
+        )
+
+    @property
+    def counted_in(self) -> tuple[str, Fraction]:
+        """The unit in which results print its values, and what one of it is in the unit of ``value``.
+
+        Results are in SI units, but what was declared in rpm, kHz or mm/rev is answered in that.
+        """
+        return (self.written_unit, self.scale.rational) if self.cycles else (self.unit, Fraction(1))
 
 
 @dataclass(frozen=True, slots=True)
@@ -364,6 +388,8 @@ class Model:
     quotients: tuple[tuple[tuple[str, str], Dimension], ...] = ()
     operating_point: OperatingPoint | None = None
     warnings: tuple[Diagnostic, ...] = field(default=(), compare=False, repr=False)
+    # What was declared in cycles and is used in radians, as it is used; of models in blocks too.
+    conversions: tuple[ModelParameter, ...] = field(default=(), compare=False, repr=False)
 
     def __repr__(self) -> str:
         pairs = ", ".join("/".join(pair) for pair in self.transfer_functions[:PAIRS_SHOWN])

@@ -57,7 +57,7 @@ from symflex.expressions.trigonometric import shorter
 from symflex.model.model import Definition, OperatingPoint, Signal
 from symflex.model.reading import Reader, literal_value
 from symflex.model.scope import nearest_name
-from symflex.model.units import lower
+from symflex.model.units import AsWritten, lower
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
@@ -92,7 +92,11 @@ NOWHERE = AtRest({}, (), (), None)
 
 
 def read_operating_point(
-    reader: Reader, section: TableValue | None, taken: Collection[str], moving: Collection[str]
+    reader: Reader,
+    section: TableValue | None,
+    taken: Collection[str],
+    moving: Collection[str],
+    cycles: AsWritten,
 ) -> AtRest | None:
     """Return the values of ``[operating_point]``; ``taken`` are names of what is constant."""
     if section is None:
@@ -106,6 +110,7 @@ def read_operating_point(
         value = reader.expression(entry.value, f"'{entry.key}' of [operating_point]")
         if value is None:
             continue
+        value = cycles.read(value)
         literal = literal_value(value)
         if literal is not None and literal != 0:
             # A number alone would fit any unit.

@@ -13,7 +13,7 @@ from typing import Literal
 
 from symflex.algebra import LAPLACE
 from symflex.errors import Diagnostic, Source, Span, SpecError, UsageError
-from symflex.expressions import Attribute, Equation, Expression, names, substitute
+from symflex.expressions import Attribute, Equation, Expression, names
 from symflex.library.elements import COMPONENTS, LineElement, Placing
 from symflex.model.analysis import (
     check_printed,
@@ -35,7 +35,6 @@ from symflex.model.boundary import (
 )
 from symflex.model.branches import with_branches
 from symflex.model.declarations import (
-    CycleReading,
     DeclaredParameter,
     doubtful_units,
     read_definitions,
@@ -44,7 +43,6 @@ from symflex.model.declarations import (
     read_signals,
     with_formulas_defined,
 )
-from symflex.model.dimensions import turned_name
 from symflex.model.equations import check_unknowns, read_equations, read_state_equations
 from symflex.model.fields import read_fields, with_brackets_opened
 from symflex.model.headings import CONSEQUENCES, SECTIONS, check_header, read_section, settled_problems
@@ -76,15 +74,16 @@ from symflex.model.settings import Setting, check_names, settled
 from symflex.model.signs import Line, check_ranges, ranged_values
 from symflex.model.spec import Spec, TableValue, parse_with_recovery
 from symflex.model.units import (
+    AsWritten,
     block_unit,
     check_units,
     constant_measure,
+    declared_quantities,
     implied_units,
     lower,
     measured_input,
     measured_variables,
     port_unit,
-    printed_in_cycles,
     quotients,
 )
 from symflex.model.unused import unused
@@ -156,11 +155,14 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     signals += read_state_equations(reader, sections["blocks"], taken, {x.name for x in signals})
     signals += read_equations(reader, sections["equations"], taken, {x.name for x in signals})
     draft = Draft(declared, inherited, definitions, (), elements, inputs, blocks, signals, outputs, ())
-    draft, point = _with_motion(reader, sections, draft, taken)
+    draft, cycles = _with_turns_read(reader, draft)
+    draft, point = _with_motion(reader, sections, draft, taken, cycles)
     taken |= {d.name for d in draft.definitions}
     loads = {x.name for x in draft.signals} | {d.input.name for d in inputs}
     fields = with_brackets_opened(
-        reader, read_fields(reader, sections["fields"], taken), has_coordinate=COORDINATE not in taken | loads
+        reader,
+        tuple(f.rewritten(cycles.read) for f in read_fields(reader, sections["fields"], taken)),
+        has_coordinate=COORDINATE not in taken | loads,
     )
     measure = constant_measure(draft.declared, inherited, draft.definitions)
     attached = [a for element in draft.elements for a in element.attachments(measure)]
@@ -170,7 +172,7 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     named = taken | loads | {n.name for n in nodes}
     draft = with_imaginary_unit(reader, with_written_delays(with_branches(draft, named), named))
     broken = broken_names(sections, draft) | twins
-    model, turned = _finish(reader, draft, broken)
+    model = _finish(reader, draft, broken, cycles)
     later, hints, solved_with = Reader(), Reader(), point.solved_with if point else ()
     model = replace(
         model,
@@ -182,20 +184,9 @@ def resolve(spec: Spec, origin: Origin) -> Model:
         analysis=read_analysis(reader, sections["analysis"]),
         figures=read_figures(later, sections["figures"], model),
         drawing=read_drawing(hints, sections["drawing"], model),
-        published=tuple(
-            printed_in_cycles(p, draft, turned) for p in read_published(later, sections["published"], model)
-        ),
+        published=tuple(map(cycles.printed, read_published(later, sections["published"], model))),
     )
-    readable = readable_names(model, broken)
-    own = printed_in_cycles(in_own_names(model.analysis), draft, turned)
-    model = replace(model, analysis=replace(model.analysis, print=own.where))
-    meant = {*readable.constants, *readable.definitions, *readable.varying}
-    for name, expression in own.where:
-        if name in meant:
-            message = f"'{name}' in print of [analysis] has a meaning already"
-            reader.note("SF213", message, expression.span, "give the combination of parameters another name")
-    for published in (*model.published, *([] if {n for n, _ in own.where} & meant else [own])):
-        later.take(check_printed(published, readable))
+    model = _with_names_in_print(reader, later, model, broken, cycles)
     # A transfer function is missing where its output or input could not be read: no second mistake.
     whole = all(
         len(entries) == len(section.entries)
@@ -209,18 +200,71 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     if problems:
         raise SpecError(*_in_order(problems, spec.source))
     inner = [w for b in model.blocks if b.submodel is not None for w in b.submodel.warnings]
-    return replace(model, warnings=tuple(_in_order([*model.warnings, *unused(model), *inner], spec.source)))
+    return replace(
+        model,
+        conversions=_conversions(model, definitions, cycles.converted),
+        warnings=tuple(_in_order([*model.warnings, *unused(model), *inner], spec.source)),
+    )
+
+
+def _with_names_in_print(
+    reader: Reader, later: Reader, model: Model, broken: frozenset[str], cycles: AsWritten
+) -> Model:
+    """Return a model whose names for print are read, and note what is wrong in printed formulas."""
+    readable = readable_names(model, broken)
+    own = cycles.printed(in_own_names(model.analysis))
+    meant = {*readable.constants, *readable.definitions, *readable.varying}
+    for name, expression in own.where:
+        if name in meant:
+            message = f"'{name}' in print of [analysis] has a meaning already"
+            reader.note("SF213", message, expression.span, "give the combination of parameters another name")
+    for published in (*model.published, *([] if {n for n, _ in own.where} & meant else [own])):
+        later.take(check_printed(published, readable))
+    return replace(model, analysis=replace(model.analysis, print=own.where))
+
+
+def _conversions(
+    model: Model, definitions: Sequence[Definition], converted: Collection[str]
+) -> tuple[ModelParameter, ...]:
+    """Return what is in cycles and became radians, as it is used: parameters, and definitions like them."""
+    literals = [(d, d.expression.quantity) for d in definitions if isinstance(d.expression, QuantityLiteral)]
+    known = [*model.parameters]
+    known += [
+        DeclaredParameter(d.name, q, True, "", "real", "", "", d.span).resolve()
+        for d, q in literals
+        if d.span
+    ]
+    found = {p.name: p.in_radians for p in known if p.name in converted}
+    for block in model.blocks:
+        found = {p.name: p for p in (block.submodel.conversions if block.submodel else ())} | found
+    return tuple(found.values())
+
+
+def _with_turns_read(reader: Reader, draft: Draft) -> tuple[Draft, AsWritten]:
+    """Return a draft in which every frequency stands as it is meant, and what reads further expressions."""
+    quantities = declared_quantities(draft.declared, draft.inherited)
+    literals = (d.expression for d in draft.definitions)
+    written = [*quantities.values(), *(e.quantity for e in literals if isinstance(e, QuantityLiteral))]
+    if not any(q is not None and q.cycles for q in written):
+        return draft, AsWritten()
+    from symflex.model.cycles import converted  # few models need it
+
+    return converted(reader, draft, quantities)
 
 
 def _with_motion(
-    reader: Reader, sections: Mapping[str, TableValue | None], draft: Draft, taken: Collection[str]
+    reader: Reader,
+    sections: Mapping[str, TableValue | None],
+    draft: Draft,
+    taken: Collection[str],
+    cycles: AsWritten,
 ) -> tuple[Draft, OperatingPoint | None]:
     """Return a draft whose equations of motion are linear, and the point at which they are."""
     if not any(sections[name] for name in ("equations", "operating_point", "energy")):
         return draft, None
     from symflex.model.energy import with_motion  # four modules that few models need
 
-    return with_motion(reader, sections, draft, taken)
+    return with_motion(reader, sections, draft, taken, cycles)
 
 
 def _check_count(reader: Reader, spec: Spec, outputs: Sequence[Output], inputs: Sequence[DraftInput]) -> None:
@@ -285,7 +329,7 @@ def _inherited_parameters(
     reader: Reader, declared: Sequence[DeclaredParameter], blocks: Sequence[PlacedBlock]
 ) -> tuple[ModelParameter, ...]:
     """Return the parameters that ``model`` blocks bring along; an equal name must be equal in value."""
-    own = {p.name: p.resolve(CycleReading.TURNED, "") for p in declared}
+    own = {p.name: p.resolve() for p in declared}
     inherited: dict[str, ModelParameter] = {}
     bringing: dict[str, str] = {}
     for block in blocks:
@@ -306,8 +350,8 @@ def _inherited_parameters(
     return tuple(inherited.values())
 
 
-def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> tuple[Model, Mapping[str, Expression]]:
-    """Check names, linearity and units, and return the model and where cycles became radians."""
+def _finish(reader: Reader, draft: Draft, broken: frozenset[str], cycles: AsWritten) -> Model:
+    """Check names, linearity and units, and return the model."""
     nodes = {n.name: n for n in draft.nodes}
     placed = tuple(_place(d, nodes) for d in draft.elements)
     inputs = tuple(d.input for d in draft.inputs)
@@ -337,7 +381,8 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> tuple[Model
     acting = [e for e, kind in _all_expressions(replace(draft, signals=(), outputs=())) if kind == "signal"]
     equations = [e for f in draft.fields for e in (*f.equations, *f.conditions)]
     check_unknowns(reader, draft.signals, [*acting, *equations])
-    around = _surroundings(draft, scope)
+    parameters = [p.resolve(is_converted=p.name in cycles.eager) for p in draft.declared]
+    around = _surroundings(draft, scope, (*parameters, *draft.inherited))
     for ranged in ranged_values(draft):
         if ranged.is_extent and depends_on_s(ranged.expression, around.varying):
             reader.note("SF249", f"{ranged.what} cannot depend on s", ranged.expression.span)
@@ -347,7 +392,6 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> tuple[Model
     fields_placed = check_fields(reader, draft.fields, around)
     unsound |= {e.span for e in equations if _holds(e, reader.problems[before:])}
     system = check_units(reader, draft, placed, scope, unsound, fields_placed)
-    readings = system.finish()
     reader.take(system.problems)
     # A section of other units has other signs, too.
     unsound |= {r.expression.span for r in ranged_values(draft) if _holds(r.expression, system.problems)}
@@ -359,36 +403,30 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> tuple[Model
         check_points(reader, expression, along, around)
     implied = implied_units(placed, draft.blocks)
     parameters = [
-        p.resolve(readings.get(p.name, CycleReading.CYCLES), implied.get(p.name, "")) for p in draft.declared
+        p.resolve(implied.get(p.name, ""), is_converted=p.name in cycles.eager) for p in draft.declared
     ]
     units = {v: d for v in measured_variables(draft) if (d := system.dimension(system.variable(v)))}
-    cycles = {p.name: p.cycles for p in (*parameters, *draft.inherited)}
-    turned = {n: turned_name(n, cycles[n]) for n, r in readings.items() if r is CycleReading.TURNED}
-
-    def whole(expression: Expression, unit: str = "") -> Expression:
-        return substitute(lower(expression, unit), turned)
-
-    model = Model(
+    return Model(
         parameters=(*parameters, *draft.inherited),
-        definitions=tuple(replace(d, expression=whole(d.expression)) for d in draft.definitions),
+        definitions=tuple(replace(d, expression=lower(d.expression)) for d in draft.definitions),
         nodes=draft.nodes,
         elements=tuple(
             replace(
-                e, values=with_loss(e.element, tuple((n, whole(v, port_unit(e, n))) for n, v in e.values))
+                e, values=with_loss(e.element, tuple((n, lower(v, port_unit(e, n))) for n, v in e.values))
             )
             for e in placed
         ),
-        signals=tuple(replace(x, expression=whole(x.expression)) for x in draft.signals),
+        signals=tuple(replace(x, expression=lower(x.expression)) for x in draft.signals),
         blocks=tuple(
-            replace(b, values=tuple((n, whole(v, block_unit(b, n))) for n, v in b.values))
+            replace(b, values=tuple((n, lower(v, block_unit(b, n))) for n, v in b.values))
             for b in draft.blocks
         ),
-        fields=tuple(f.rewritten(whole) for f in draft.fields),
+        fields=tuple(f.rewritten(lower) for f in draft.fields),
         inputs=tuple(measured_input(i, system) for i in inputs),
         outputs=tuple(
             replace(
                 o,
-                expression=whole(o.expression),
+                expression=lower(o.expression),
                 dimension=(d := system.dimension(system.measure(o.expression))),
                 unit="" if d is None else str(d),
             )
@@ -396,9 +434,8 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> tuple[Model
         ),
         signal_units=tuple(units.items()),
         quotients=tuple(quotients(draft, system)),
-        warnings=(*doubtful_units(draft.declared), *system.readings()),
+        warnings=tuple(doubtful_units(draft.declared)),
     )
-    return model, turned
 
 
 def _in_radians(model: Model, coordinates: Iterable[str]) -> tuple[Output, ...]:
@@ -452,10 +489,8 @@ def _place(draft: DraftElement, nodes: Mapping[str, NetworkNode]) -> PlacedEleme
     )
 
 
-def _surroundings(draft: Draft, scope: ModelScope) -> Surroundings:
+def _surroundings(draft: Draft, scope: ModelScope, parameters: Sequence[ModelParameter]) -> Surroundings:
     """Return what places along x are made of."""
-    parameters = [p.resolve(CycleReading.TURNED, "") for p in draft.declared]
-    parameters += draft.inherited
     extended = bool(draft.fields) or any(True for _ in ranged_values(draft))
     definitions = {d.name: d.expression for d in draft.definitions} if extended else {}
     line = Line(

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE
 from symflex.errors import Span
-from symflex.expressions import Equation, Expression, Name, Sum, names, number, power, product_of, substitute
+from symflex.expressions import Equation, Expression, Name, Sum, names, number, power, product_of
 from symflex.library.elements import ACROSS_UNIT, COMPONENT_DOMAIN, THROUGH_UNIT, LineElement, Variable
-from symflex.model.declarations import CycleReading, DeclaredParameter
-from symflex.model.dimensions import PER_SECOND, DimensionSystem, Measure, misplaced
+from symflex.model.declarations import DeclaredParameter
+from symflex.model.dimensions import PER_SECOND, SECOND, DimensionSystem, Measure, misplaced
 from symflex.model.model import (
     IMAGINARY,
     INPUT_KINDS,
@@ -30,6 +30,27 @@ from symflex.quantities import DIMENSIONLESS, Dimension, Quantity, unit_of
 
 if TYPE_CHECKING:
     from symflex.model.network import Draft
+
+
+class AsWritten:
+    """Reads expressions in which nothing counts cycles; :class:`symflex.model.cycles.Cycles` reads others."""
+
+    eager: Collection[str] = ()  # what is declared in cycles, and by its name in radians
+    converted: Collection[str] = ()  # what became radians somewhere
+
+    def read(self, expression: Expression, *, is_delay: bool = False) -> Expression:
+        """Return an expression, or an equation, as it is meant."""
+        return expression
+
+    def printed(self, published: Published) -> Published:
+        """Return a printed formula as it is meant."""
+        return published
+
+
+def counts_cycles(quantity: Quantity) -> bool:
+    """Tell whether a quantity may become radians: ``5 ms/rev`` is a period."""
+    is_period = quantity.cycles < 0 and quantity.dimension == SECOND**-quantity.cycles
+    return bool(quantity.cycles) and not is_period
 
 
 def check_units(
@@ -84,7 +105,7 @@ def check_units(
         else:
             system.equate(Variable("signal", signal.name), signal.expression)
     for output in draft.outputs:
-        system.read(output.expression)
+        system.measure(output.expression)
     has_units = any((placed, dimensions, *quantities.values()))
     system.settle([p.name for p in draft.declared if p.quantity] + [*definitions] if has_units else ())
     if system.problems and infers and not system.lacks_an_s:
@@ -126,10 +147,11 @@ def constant_measure(
     declared: Sequence[DeclaredParameter],
     inherited: Sequence[ModelParameter],
     definitions: Sequence[Definition],
+    bare: Quantity | None = None,
 ) -> Callable[[Expression], Dimension | None]:
     """Return a function that tells the dimension of an expression of parameters, ``None`` when it is open."""
     # A parameter without unit is taken for a number, as the ``n`` of a ratio ``n*r`` mostly is.
-    plain = Quantity(Fraction(1), 0, 0, DIMENSIONLESS, 0, "")
+    plain = bare or Quantity(Fraction(1), 0, 0, DIMENSIONLESS, 0, "")
     quantities = {name: given or plain for name, given in declared_quantities(declared, inherited).items()}
     scope = build_scope([*quantities], definitions, (), (), (), (), ())
     system = DimensionSystem(scope, quantities, {d.name: d.expression for d in definitions}, {}, {})
@@ -140,29 +162,6 @@ def constant_measure(
         return system.dimension(system.measure(expression)) if names(expression) else None
 
     return measure
-
-
-def printed_in_cycles(published: Published, draft: Draft, turned: Mapping[str, Expression]) -> Published:
-    """Return a printed formula with 2 pi beside every parameter that is read in radians."""
-    if not turned:
-        return published
-    quantities = declared_quantities(draft.declared, draft.inherited)
-    own = [Definition(name, expression) for name, expression in published.where]
-    hidden = {d.name for d in own}
-    definitions = [*(d for d in draft.definitions if d.name not in hidden), *own]
-    scope = build_scope([n for n in quantities if n not in hidden], definitions, (), (), (), (), ())
-    system = DimensionSystem(scope, quantities, {d.name: d.expression for d in definitions}, {}, {})
-    for root in (published.expression, published.scale):
-        if root is not None:
-            system.read(root)
-    readings = system.finish()
-    used = {n: e for n, e in turned.items() if readings[n] is not CycleReading.CYCLES and n not in hidden}
-    return replace(
-        published,
-        expression=substitute(published.expression, used),
-        where=tuple((name, substitute(e, used)) for name, e in published.where),
-        scale=None if published.scale is None else substitute(published.scale, used),
-    )
 
 
 def _in_si(parameter: ModelParameter) -> Quantity | None:

@@ -1,3 +1,4 @@
+import math
 import re
 
 import pytest
@@ -34,7 +35,36 @@ def test_json_of_a_good_specification(shell):
         "problems": [],
         "warnings": [],
         "transfer_functions": ["X/F", "V/F"],
+        "conversions": [],
     }
+
+
+def test_what_is_declared_in_cycles_is_listed_as_it_is_used(shell):
+    text = """symflex = 1
+parameters = { f_c = "50 Hz", n = "3000 rpm", r = "5 mm/rev", f_s = "1 kHz", f = { unit = "Hz" } }
+definitions = { f_0 = "10 Hz" }
+inputs.u = {}
+outputs.y = "u*f_c/(s + f_c) + n*u/s + exp(-s/f_s)*u + u*f_0/(s + f)"
+outputs.x = "r*u"
+"""
+    (shell.folder / "turns.toml").write_text(text)
+    assert shell("check", "turns.toml").out.splitlines()[-5:] == [
+        "  f_c = 50 Hz, used as 314.159 rad/s",
+        "  n = 3000 rpm, used as 314.159 rad/s",
+        "  r = 5 mm/rev, used as 0.000795775 m/rad",
+        "  f in Hz, used in rad/s",
+        "  f_0 = 10 Hz, used as 62.8319 rad/s",
+    ]
+    found = shell("check", "turns.toml", "--json").json["conversions"]
+    assert [c["name"] for c in found] == ["f_c", "n", "r", "f", "f_0"]
+    assert found[1] == {
+        "name": "n",
+        "declared": 3000,
+        "declared_unit": "rpm",
+        "value": pytest.approx(100 * math.pi),
+        "unit": "rad/s",
+    }
+    assert found[3]["declared"] is None is found[3]["value"]
 
 
 def test_json_of_a_wrong_specification_lists_the_problems_on_stdout(shell):

@@ -33,7 +33,7 @@ RIGHT = [
     (text(pid('k_i = "K/(20*T_s)"')), lambda s, T: 2 * (1 + 1 / (20 * T * s))),
     (text(pid('k_i = "K*0.05/T_s", k_d = "2*K*T_s", T_f = "T_s/2"')),
      lambda s, T: 2 * (1 + 0.05 / (T * s) + 2 * T * s / (1 + T * s / 2))),
-    (text(pid('k_d = "K/f_s"')), lambda s, T: 2 * (1 + T * s)),
+    (text(pid('k_d = "K*(1/f_s)"')), lambda s, T: 2 * (1 + T * s)),
     (text(output("D*(1 + 3*T_s*s)/(1 + T_s*s)*u", D)),
      lambda s, T: exp(-1.5 * T * s) * (1 + 3 * T * s) / (1 + T * s)),
     (text(output("exp(-s*T_d)*u"), 'T_s = "1/f_s"\nT_d = "T_c + T_s/2"\nT_c = "T_s"'),
@@ -84,14 +84,18 @@ def test_a_formula_of_a_period_is_printed_without_pi():
 
 def test_a_frequency_over_a_frequency_and_s_over_one_keep_their_meaning():
     # f_c/f_s counts cycles per sample; s/f_s compares with an angular frequency, as s + f_s does.
-    both = text(output("f_c/f_s*u")).replace("[definitions]", 'f_c = "1 kHz"\n[definitions]')
-    values = [
-        symflex.loads(x).transfer_function("y", "u").bind()(S)
-        for x in (both, both.replace("f_c/f_s", "f_c*T_s"))
-    ]
-    values.append(
-        symflex.loads(text(output("u/(1 + s/f_s)"), 'T = "1 s"')).transfer_function("y", "u").bind()(S)
-    )
-    assert values == pytest.approx([0.1, 0.1, 1 / (1 + S / (2 * pi * 1e4))], rel=1e-12)
-    with pytest.raises(SpecError, match="SF204"):
-        symflex.loads(text(output("T_s*u/(s + f_s)")))
+    ratio = text(output("f_c/f_s*u")).replace("[definitions]", 'f_c = "1 kHz"\n[definitions]')
+    corner = text(output("u/(1 + s/f_s)"), 'T = "1 s"')
+    values = [symflex.loads(x).transfer_function("y", "u").bind()(S) for x in (ratio, corner)]
+    assert values == pytest.approx([0.1, 1 / (1 + S / (2 * pi * 1e4))], rel=1e-12)
+
+
+def test_a_period_and_an_angular_frequency_may_stand_in_one_expression():
+    both = symflex.loads(text(output("T_s*u/(s + f_s)"))).transfer_function("y", "u").bind()
+    assert both(S) == pytest.approx(1e-4 / (S + 2e4 * pi), rel=1e-12)
+
+
+def test_what_is_a_period_or_an_angular_frequency_is_refused():
+    for spec in (pid('k_d = "K/f_s"'), output("f_s*T_s*u"), output("K/f_s*u")):
+        with pytest.raises(SpecError, match="SF204"):
+            symflex.loads(text(spec))

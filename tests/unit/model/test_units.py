@@ -68,10 +68,6 @@ def test_hertz_inverted_to_a_time_stays_in_cycles():
     assert value_of(text, "f") == ExactValue(Fraction(50), 0)
 
 
-def test_both_readings_of_one_parameter_are_refused():
-    assert codes(with_output('"11 Hz"', "U*f/(s + f) + U*2*pi*f/(s + 2*pi*f)")) == ["SF204"]
-
-
 SCREW = (
     HEADER
     + """r = "5 mm/rev"
