@@ -101,7 +101,8 @@ def draw_locus(loop: AnyLoop, canvas: Canvas) -> Figure:
     boundaries = find_stable_gains(loop, locus.limits).boundaries if isinstance(loop, Loop) else ()
     width = canvas.width or COLUMN_INCHES
     lines = title_lines(canvas.title, width)
-    stages = _stages(locus)
+    size = loop.gain.counted_in[1]
+    stages = _stages(locus, size)
     name = label_of_name(locus.gain)
     # What each gain makes of stability, then what no gain moves and nothing sees.
     verdicts = [located.verdict for *_, located, _ in stages]
@@ -115,7 +116,7 @@ def draw_locus(loop: AnyLoop, canvas: Canvas) -> Figure:
         *(RootMark("zero", point_of(root)) for root in locus.start.zeros),
     ]
     crossings = {
-        complex(0, float(omega.mid())): f"${name} = {number_label(float(boundary.gain.mid()))}$"
+        complex(0, float(omega.mid())): f"${name} = {number_label(float(boundary.gain.mid()) / float(size))}$"
         + (f", {number_label(float(hertz(omega).mid()))} Hz" if omega > 0 else "")
         for boundary in boundaries
         for omega in boundary.frequencies
@@ -173,14 +174,16 @@ def draw_locus(loop: AnyLoop, canvas: Canvas) -> Figure:
 Stage = tuple[Kind, str, "PoleZeroMap", list[complex]]  # a value of the gain, in mathematics, and its poles
 
 
-def _stages(locus: RootLocus) -> list[Stage]:
-    """Return the gains whose poles are marked, ascending."""
+def _stages(locus: RootLocus, size: Fraction) -> list[Stage]:
+    """Return the gains whose poles are marked, ascending, printed in a unit of some size."""
     low, high = locus.limits
     proved: list[tuple[Kind, Fraction, PoleZeroMap]] = [("pole", low, locus.start)]
     proved += [("nominal", *locus.nominal)] if locus.nominal else []
     stages = [(*one, [point_of(root) for root in one[2].all_poles]) for one in proved]
     stages.append(("last", high, locus.end, list(locus.ends)))
-    return [(kind, number_label(float(gain)), located, points) for kind, gain, located, points in stages]
+    labels = [number_label(float(gain / size)) for _, gain, _, _ in stages]
+    pairs = zip(labels, stages, strict=True)
+    return [(kind, label, located, points) for label, (kind, _, located, points) in pairs]
 
 
 def _view(locus: RootLocus, marks: Sequence[RootMark], canvas: Canvas, crossing: float) -> View:
@@ -262,7 +265,8 @@ def draw_curves(
     width, said = canvas.width or COLUMN_INCHES, list[str]()
     if is_loop := isinstance(drawn, Loop | NetworkLoop):
         gain = nominal_gain(drawn)
-        labels = [f"loop gain, ${label_of_name(drawn.gain.name)} = {number_label(float(gain))}$"]
+        shown = number_label(float(gain / drawn.gain.counted_in[1]))
+        labels = [f"loop gain, ${label_of_name(drawn.gain.name)} = {shown}$"]
         if isinstance(drawn, NetworkLoop):
             followed = [_network_curve(drawn, gain, canvas)]
         else:

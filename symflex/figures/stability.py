@@ -33,12 +33,14 @@ def draw_stability(
     if isinstance(stability, StabilityChart):
         _draw_chart(stability, axes, with_box=with_box)
     else:
-        _draw_counts(stability, axes)
+        _draw_counts(stability.shown, axes)
     return root_figure(axes)
 
 
 def _draw_chart(chart: StabilityChart, axes: Axes, *, with_box: bool) -> None:
-    (left, right), (low, high) = ((float(a), float(b)) for a, b in chart.ranges)
+    (unit, size), (other_unit, other_size) = chart.counted_in
+    sizes = np.array([float(size), float(other_size)])
+    (left, low), (right, high) = np.array(chart.ranges, dtype=float).T / sizes
     step = max(1, len(chart.cells) // MOST_PIXELS)
     cells = np.pad(chart.cells[step // 2 :: step, step // 2 :: step].T, 1, mode="edge")
     middles = (np.arange(len(cells)) - 0.5) / (len(cells) - 2)
@@ -48,29 +50,29 @@ def _draw_chart(chart: StabilityChart, axes: Axes, *, with_box: bool) -> None:
         if shown.any():
             axes.contourf(x, y, shown.astype(float), levels=(0.5, 1.5), colors=[colour], zorder=1)
     for curve in chart.boundaries:
-        across, upwards, _ = np.array(curve).T
+        across, upwards = np.array(curve)[:, :2].T / sizes[:, None]
         axes.plot(across, upwards, "-", color=COLOURS[0], linewidth=1.1, zorder=3)
     for region in chart.regions:
         if region.share >= LEGIBLE:
             count = region.verdict.right
             said = f"{count} unstable" if count else word_of(region.verdict)
-            at = (float(region.point[0]), float(region.point[1]))
+            at = np.array(region.point, dtype=float) / sizes
             # Above its point, at which the star of the declared values may stand.
             note = axes.annotate(said, at, (0, 5), textcoords="offset points", ha="center", fontsize=7)
             note.set(zorder=4, clip_on=True)
     a, b = chart.nominal
     if a is not None and b is not None:
-        axes.plot([float(a)], [float(b)], "*", color="black", markersize=6, zorder=5)
+        axes.plot([float(a / size)], [float(b / other_size)], "*", color="black", markersize=6, zorder=5)
     if with_box and (box := chart.largest_box()):
-        (a0, a1), (b0, b1) = ((float(u), float(v)) for u, v in box)
+        (a0, b0), (a1, b1) = np.array(box, dtype=float).T / sizes
         axes.add_patch(
             Rectangle((a0, b0), a1 - a0, b1 - b0, fill=False, linestyle="--", linewidth=0.8, zorder=4)
         )
     axes.set_xlim(left, right)
     axes.set_ylim(low, high)
     set_round_ticks(axes, 6, 6)
-    axes.set_xlabel(label_with_unit(chart.names[0], chart.units[0]))
-    axes.set_ylabel(label_with_unit(chart.names[1], chart.units[1]))
+    axes.set_xlabel(label_with_unit(chart.names[0], unit))
+    axes.set_ylabel(label_with_unit(chart.names[1], other_unit))
 
 
 def _draw_counts(stability: StabilityMap, axes: Axes) -> None:

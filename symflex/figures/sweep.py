@@ -129,12 +129,12 @@ def _panels(sweep: Sweep, modes: int | None) -> list[Panel]:
 def _family(sweep: Sweep) -> Family | None:
     """Return the parameter that lines run along, and its axis: the others, if any, have few values."""
     shape = sweep["point_status"].shape
-    if any(p.dims == ("draw",) for p in sweep.parameters) or len(sweep.parameters) != len(shape):
+    if any(p.dims == ("draw",) for p in sweep.shown) or len(sweep.shown) != len(shape):
         return None
     axis = int(np.argmax(shape))
     if np.prod(shape) > FEW_LINES * shape[axis]:
         return None
-    return next(p for p in sweep.parameters if p.dims == (_dims(sweep)[axis],)), axis
+    return next(p for p in sweep.shown if p.dims == (_dims(sweep)[axis],)), axis
 
 
 def _dims(sweep: Sweep) -> tuple[str, ...]:
@@ -143,7 +143,7 @@ def _dims(sweep: Sweep) -> tuple[str, ...]:
 
 def _others(sweep: Sweep, parameter: Labelled) -> str:
     """Say what tells the lines of a family apart."""
-    others = [p for p in sweep.parameters if p is not parameter and p.values.size > 1]
+    others = [p for p in sweep.shown if p.name != parameter.name and p.values.size > 1]
     ends = [(label_with_unit(p.name, p.unit), _short(p.values[0]), _short(p.values[-1])) for p in others]
     shown = [f"{label}: {low} to {high}" for label, low, high in ends]
     return "pale to full, " + "; ".join(shown) if shown else ""
@@ -255,7 +255,7 @@ def _colours(values: Doubles) -> tuple[Normalize, Colormap]:
 
 def _loci(sweep: Sweep, modes: int | None, line: Labelled | None, axes: Axes) -> None:
     """Draw the roots in the upper half-plane, coloured by the first parameter."""
-    parameter = sweep.parameters[0]
+    parameter = sweep.shown[0]
     along = [-1 if dim == parameter.dims[0] else 1 for dim in _dims(sweep)]
     value = np.broadcast_to(parameter.values.reshape(along), sweep["point_status"].shape).reshape(-1)
     re, im = (sweep[name].reshape(value.size, -1)[:, :modes] for name in ("re", "im"))

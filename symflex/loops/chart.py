@@ -27,6 +27,7 @@ from symflex.budget import entered_budget
 from symflex.errors import BudgetError, SymflexError
 from symflex.loops.boundary_curves import Point, boundary_curves
 from symflex.loops.boxes import Box, CharacteristicFunction, OpenBox
+from symflex.model import ModelParameter
 from symflex.print.notebook import Printed
 from symflex.print.text import INDENT, Passage
 from symflex.roots.locate import locate
@@ -72,6 +73,7 @@ class StabilityChart(Printed):
 
     names: tuple[str, ...]
     units: tuple[str, ...]
+    counted_in: tuple[tuple[str, Fraction], ...]  # units in which it prints, and what one of them is
     ranges: Box
     nominal: tuple[Fraction | None, ...]  # declared values
     cells: npt.NDArray[np.int16] = field(repr=False)  # of equal parts of the ranges, -1 or the region of each
@@ -86,20 +88,19 @@ class StabilityChart(Printed):
     def passages(self) -> list[Passage]:
         """Return what is decided, region by region."""
         status = "certified" if self.certified else "NOT CERTIFIED"
-        heads = [
-            f"{name} [{unit}]" if unit else name for name, unit in zip(self.names, self.units, strict=True)
-        ]
+        units, sizes = zip(*self.counted_in, strict=True)
+        heads = [f"{name} [{unit}]" if unit else name for name, unit in zip(self.names, units, strict=True)]
         lines = [f"{', '.join(heads)}   {status}: {100 * self.decided:.1f} % of the area decided"]
-        for name, (low, high) in zip(self.names, self.ranges, strict=True):
-            lines.append(f"{INDENT}examined: {float(low):.6g} < {name} < {float(high):.6g}")
+        for name, (low, high), size in zip(self.names, self.ranges, sizes, strict=True):
+            lines.append(f"{INDENT}examined: {float(low / size):.6g} < {name} < {float(high / size):.6g}")
         lines += [f"{INDENT}not proved: {reason}" for reason in self.reasons]
         if None not in self.nominal:
-            point = zip(self.names, self.nominal, strict=True)
-            place = ", ".join(f"{name} = {float(x or 0):.6g}" for name, x in point)
+            point = zip(self.names, self.nominal, sizes, strict=True)
+            place = ", ".join(f"{name} = {float((x or 0) / size):.6g}" for name, x, size in point)
             lines.append(f"{INDENT}{place}: {self.at_nominal}")
         rows = [("share", "verdict", *self.names)]
         for region in self.regions[:SHOWN]:
-            point_of = (f"{float(x):.4g}" for x in region.point)
+            point_of = (f"{float(x / size):.4g}" for x, size in zip(region.point, sizes, strict=True))
             rows.append((f"{100 * region.share:.1f} %", word_of(region.verdict), *point_of))
         more = len(self.regions) - SHOWN
         more_said = f", the {SHOWN} largest of {len(self.regions)}" if more > 0 else ""
@@ -234,7 +235,7 @@ def find_chart(
     function: CharacteristicFunction,
     ranges: Box,
     nominal: Sequence[Fraction | None],
-    units: Sequence[str],
+    parameters: Sequence[ModelParameter],
     resolve: float = 0.01,
 ) -> StabilityChart:
     """Return where in finite ``ranges`` a model is stable, up to a share to ``resolve`` and the time."""
@@ -277,8 +278,9 @@ def find_chart(
     inner = (box for box in smallest if not rims & {(k, x) for k, e in enumerate(box.box) for x in e})
     ends = {box.radius for box in inner if isinstance(box.radius, str)}
     regions_of, regions = _regions(function, free, ranges, reasons)
+    units, counted_in = (p.unit for p in parameters), (p.counted_in for p in parameters)
     return StabilityChart(
-        function.names, tuple(units), ranges, tuple(nominal), regions_of, regions,
+        function.names, tuple(units), tuple(counted_in), ranges, tuple(nominal), regions_of, regions,
         tuple(dict.fromkeys((*reasons, *ends))), tuple(smallest), function
     )  # fmt: skip
 

@@ -117,6 +117,7 @@ def find_stable_gains(
         data_end=end,
         beyond=() if end is None or nominal is None else _beyond(lumped, nominal, end),
         gain_at_end=at_end,
+        counted_in=loop.gain.counted_in,
     )
     # What all gains leave open may be known of one: terms outweigh one another, or the loop is passive.
     if nominal is not None and end is None and stability.verdict.word == "unknown":
@@ -191,6 +192,7 @@ def _at_nominal(loop: AnyLoop, limits: Limits, digits: int, reason: str) -> Stab
         method="roots",
         at_nominal=verdict,
         tf=loop.bound.name if isinstance(loop, Loop) else "",
+        counted_in=loop.gain.counted_in,
     )
 
 

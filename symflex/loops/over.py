@@ -74,7 +74,7 @@ def stability_over(
             raise ModelError(Diagnostic("SF801", message, parameter.span, _sweep(parameter.name)))
     if len(names) > 1:
         undecided = float(share_of(given.resolve, "--resolve"))
-        return find_chart(function, limits, nominal, [p.unit for p in parameters], undecided)
+        return find_chart(function, limits, nominal, parameters, undecided)
     digits = given.digits or model.analysis.digits or 15
     return find_intervals(function, limits[0], digits, parameters[0], nominal[0])
 
@@ -209,6 +209,7 @@ def find_intervals(
         digits=digits,
         method=BOXES,
         tf=function.tf.name,
+        counted_in=parameter.counted_in,
     )
     return replace(stability, gain_margins=gain_margins(stability))
 

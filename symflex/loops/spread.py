@@ -27,7 +27,7 @@ from symflex.loops.boxes import BITS, Box, CharacteristicFunction
 from symflex.loops.chart import Word, count_at, located_at
 from symflex.loops.over import characteristic, with_values
 from symflex.loops.stability_map import SCHEMA
-from symflex.model import Model, spread_box
+from symflex.model import Model, ModelParameter, spread_box
 from symflex.options import StabilityOptions, Stated, share_of
 from symflex.print.notebook import Printed
 from symflex.print.text import Passage
@@ -46,6 +46,7 @@ class SpreadStability(Printed):
 
     names: tuple[str, ...]
     units: tuple[str, ...]
+    counted_in: tuple[tuple[str, Fraction], ...]  # units in which it prints, and what one of them is
     box: Box
     word: Word
     boxes: int = 0  # how many were needed
@@ -64,8 +65,8 @@ class SpreadStability(Printed):
         other: Sequence[Point] = self.open_box or tuple((x,) for x in self.combination or [])
         other = other or [()] * len(self.box)
         rows: list[tuple[str, ...]] = [("", "from", "to", self.word, "to")[: 3 + len(other[0])]]
-        for name, unit, *ends in zip(self.names, self.units, self.box, other, strict=True):
-            cells = (f"{float(x):.6g}" for values in ends for x in values)
+        for name, (unit, size), *ends in zip(self.names, self.counted_in, self.box, other, strict=True):
+            cells = (f"{float(x / size):.6g}" for values in ends for x in values)
             rows.append((f"{name} [{unit}]" if unit else name, *cells))
         status = "certified" if self.certified else "NOT CERTIFIED"
         return [Passage([f"{status}: {word}"]), Passage([], rows)]
@@ -114,8 +115,8 @@ def stability_spread(
 
 def spread_function(
     model: Model, share: Stated, pair: tuple[str, str] | None = None
-) -> tuple[CharacteristicFunction, Box, tuple[str, ...]]:
-    """Return a characteristic function in what is spread and moves poles, with the box, and units."""
+) -> tuple[CharacteristicFunction, Box, list[ModelParameter]]:
+    """Return a characteristic function in what is spread and moves poles, with the box, and these."""
     ends = spread_box(model.parameters, None if share == "" else share_of(share, "--spread"))
     function = characteristic(model, tuple(ends), pair)
     moving = [p for p in model.parameters if p.name in ends and (pair or function.depends_on(p.name))]
@@ -124,12 +125,15 @@ def spread_function(
     names = tuple(p.name for p in moving)
     still = tuple((p.name, p.value) for p in model.parameters if p.value and p not in moving)
     function = replace(function, names=names, values=still)
-    return function, tuple(ends[n] for n in names), tuple(p.unit for p in moving)
+    return function, tuple(ends[n] for n in names), moving
 
 
-def find_spread(function: CharacteristicFunction, box: Box, units: tuple[str, ...]) -> SpreadStability:
+def find_spread(
+    function: CharacteristicFunction, box: Box, parameters: Sequence[ModelParameter]
+) -> SpreadStability:
     """Return what holds for all parameters of a characteristic function in a box."""
-    result = SpreadStability(function.names, units, box, "undecided")
+    units, counted_in = (p.unit for p in parameters), (p.counted_in for p in parameters)
+    result = SpreadStability(function.names, tuple(units), tuple(counted_in), box, "undecided")
     pending, done, reason = deque([function.whole(box)]), 0, ""
     try:
         located = located_at(function, middle_of(box), FOLLOWED)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 from flint import arb
 
-from symflex.balls import ball, precision
+from symflex.balls import ball, bits_for_digits, precision
 from symflex.loops.apart import PolesApart
 from symflex.print.notebook import Printed
 from symflex.print.text import INDENT, Passage
@@ -114,6 +114,7 @@ class StabilityMap(Printed):
     beyond: tuple[float, ...] = ()  # abs(s) of right-half-plane poles beyond, without kernels [rad/s]
     gain_at_end: float | None = None  # the gain with which the loop gain is one where the data end
     peaks: LoopPeaks | None = None  # of the nominal gain, if the loop is stable and they were asked for
+    counted_in: tuple[str, Fraction] | None = None  # the unit in which it prints, and what one of it is
 
     @property
     def is_gain(self) -> bool:
@@ -127,44 +128,38 @@ class StabilityMap(Printed):
 
     def passages(self) -> Iterator[Passage]:
         """Return stable ranges, boundaries, counts and margins, in 80 columns for up to 20 digits."""
-        unit = f" [{self.unit}]" if self.unit else ""
-        lines = [f"{self.gain}{unit}   {_status(self)}", f"{INDENT}examined: {_examined(self)}"]
-        lines += [f"{INDENT}{'' if WITHOUT_END in x else 'not proved: '}{x}" for x in self.reasons]
-        if self.nominal is not None:
-            lines.append(f"{INDENT}{self.gain} = {_number(self.nominal)}: {self.verdict.sentence}")
-        if self.verdict.hidden:
-            lines.append(f"{INDENT}{self.tf}: {self.verdict.hidden_motion}")
-        yield Passage(lines)
-        if not self.intervals:
-            return
-        scope = "" if self.is_complete else ", as far as poles were counted"
-        scope = f", {self.where_data_end}" if self.where_data_end else scope
-        stable = [2 * INDENT + _between(interval, self) for interval in self.stable]
-        yield Passage([f"{INDENT}stable for{scope}" + (":" if stable else ": no gain"), *stable])
-        marginal = [2 * INDENT + _between(i, self) for i in self.intervals if i.poles.word == "marginal"]
-        if marginal:
-            yield Passage([f"{INDENT}marginal for{scope}, with poles on the imaginary axis:", *marginal])
-        rows = [_boundary_row(self, i) for i in range(len(self.boundaries))]
-        head = (self.gain, "radius", "omega [rad/s]", "f [Hz]", "unstable poles")
-        yield Passage([f"{INDENT}boundaries: {len(rows) or 'none'}"], [head, *rows] if rows else ())
-        counted: list[tuple[str, ...]] = [("from", "to", "right half-plane", "on the axis")]
-        for i in self.intervals:
-            ends = _end(i.low, "-inf", SHORT_DIGITS, i), _end(i.high, "inf", SHORT_DIGITS, i)
-            counted.append((*ends, str(i.poles.right), str(i.poles.axis)))
-        yield Passage([f"{INDENT}poles that are not in the left half-plane"], counted)
-        if self.gain_margins or self.phase_margins:
-            yield _margins(self)
-        if self.peaks is not None:
-            lines = [f"{INDENT}peaks of {self.gain} = {_number(self.nominal)}"]
-            yield Passage(lines, tuple(self.peaks.rows), has_head=False)
-        if self.data_end is not None:
-            yield Passage([f"{INDENT}beyond {_hertz(self.data_end)} nothing was measured", *_beyond(self)])
-        if self.crossover is not None:
-            said = 2 * INDENT + crossover_text(self.gain, self.crossover)
-            yield Passage([f"{INDENT}gain crossover with a gain margin of 6 dB", said])
-        if self.boundaries:
-            value = "gain" if self.is_gain else "value"
-            yield Passage([f"{INDENT}radius bounds the distance from the printed {value} to the boundary"])
+        return _passages(self.shown)
+
+    @property
+    def shown(self) -> StabilityMap:
+        """The map with gains in the unit in which it prints, such as rpm."""
+        unit, size = self.counted_in or (self.unit, Fraction(1))
+        if size == 1:
+            return replace(self, unit=unit)
+
+        def enclosed(gain: arb | None) -> arb | None:
+            with precision(max(BITS, bits_for_digits(self.digits) + BITS)):
+                return None if gain is None else gain * ball(1 / size)
+
+        def exact(gain: Fraction | None) -> Fraction | None:
+            return None if gain is None else gain / size
+
+        boundaries = tuple(replace(b, gain=enclosed(b.gain) or b.gain) for b in self.boundaries)
+        moved = dict(zip(map(id, self.boundaries), boundaries, strict=True))
+        return replace(
+            self,
+            unit=unit,
+            counted_in=None,
+            limits=(exact(self.limits[0]), exact(self.limits[1])),
+            boundaries=boundaries,
+            intervals=tuple(replace(i, low=enclosed(i.low), high=enclosed(i.high)) for i in self.intervals),
+            nominal=exact(self.nominal),
+            gain_margins=tuple(
+                replace(m, boundary=moved.get(id(m.boundary), m.boundary)) for m in self.gain_margins
+            ),
+            crossover=self.crossover and replace(self.crossover, gain=exact(self.crossover.gain)),
+            gain_at_end=None if self.gain_at_end is None else self.gain_at_end / float(size),
+        )
 
     def __post_init__(self) -> None:
         if not self.is_complete and not self.reasons:
@@ -372,6 +367,51 @@ class PoleCount:
 
 SHORT_DIGITS = 6
 SHOWN = 3  # frequencies of one boundary in print; the others are in the JSON
+
+
+def _passages(stability: StabilityMap) -> Iterator[Passage]:
+    unit = f" [{stability.unit}]" if stability.unit else ""
+    lines = [f"{stability.gain}{unit}   {_status(stability)}", f"{INDENT}examined: {_examined(stability)}"]
+    lines += [f"{INDENT}{'' if WITHOUT_END in x else 'not proved: '}{x}" for x in stability.reasons]
+    if stability.nominal is not None:
+        lines.append(f"{INDENT}{stability.gain} = {_number(stability.nominal)}: {stability.verdict.sentence}")
+    if stability.verdict.hidden:
+        lines.append(f"{INDENT}{stability.tf}: {stability.verdict.hidden_motion}")
+    yield Passage(lines)
+    if not stability.intervals:
+        return
+    scope = "" if stability.is_complete else ", as far as poles were counted"
+    scope = f", {stability.where_data_end}" if stability.where_data_end else scope
+    stable = [2 * INDENT + _between(interval, stability) for interval in stability.stable]
+    yield Passage([f"{INDENT}stable for{scope}" + (":" if stable else ": no gain"), *stable])
+    marginal = [
+        2 * INDENT + _between(i, stability) for i in stability.intervals if i.poles.word == "marginal"
+    ]
+    if marginal:
+        yield Passage([f"{INDENT}marginal for{scope}, with poles on the imaginary axis:", *marginal])
+    rows = [_boundary_row(stability, i) for i in range(len(stability.boundaries))]
+    head = (stability.gain, "radius", "omega [rad/s]", "f [Hz]", "unstable poles")
+    yield Passage([f"{INDENT}boundaries: {len(rows) or 'none'}"], [head, *rows] if rows else ())
+    counted: list[tuple[str, ...]] = [("from", "to", "right half-plane", "on the axis")]
+    for i in stability.intervals:
+        ends = _end(i.low, "-inf", SHORT_DIGITS, i), _end(i.high, "inf", SHORT_DIGITS, i)
+        counted.append((*ends, str(i.poles.right), str(i.poles.axis)))
+    yield Passage([f"{INDENT}poles that are not in the left half-plane"], counted)
+    if stability.gain_margins or stability.phase_margins:
+        yield _margins(stability)
+    if stability.peaks is not None:
+        lines = [f"{INDENT}peaks of {stability.gain} = {_number(stability.nominal)}"]
+        yield Passage(lines, tuple(stability.peaks.rows), has_head=False)
+    if stability.data_end is not None:
+        yield Passage(
+            [f"{INDENT}beyond {_hertz(stability.data_end)} nothing was measured", *_beyond(stability)]
+        )
+    if stability.crossover is not None:
+        said = 2 * INDENT + crossover_text(stability.gain, stability.crossover)
+        yield Passage([f"{INDENT}gain crossover with a gain margin of 6 dB", said])
+    if stability.boundaries:
+        value = "gain" if stability.is_gain else "value"
+        yield Passage([f"{INDENT}radius bounds the distance from the printed {value} to the boundary"])
 
 
 def _beyond(stability: StabilityMap) -> Iterator[str]:

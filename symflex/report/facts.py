@@ -328,6 +328,7 @@ def _of_roots(model: Model, tf: AnyTransferFunction, located: PoleZeroMap, reaso
 
 
 def _loop(stability: StabilityMap) -> LoopFacts:
+    stability = stability.shown
     intervals = stability.intervals
     band = stability.crossover
     last = None if band is None else _number(band.frequency, tau)

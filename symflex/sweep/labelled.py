@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from symflex.errors import counted
 from symflex.errors.optional import installed
 from symflex.print.notebook import Printed
 from symflex.print.text import Passage
+from symflex.quantities import unit_of
 from symflex.sweep.design import Array, Design, Rows, Task, number
 from symflex.sweep.follow import Between, NameOrigin, follow, predecessors
 from symflex.sweep.points import MARGINS, VERDICTS, PointStatus, RootStatus
@@ -78,7 +79,7 @@ class Sweep(Printed):
         shape = " x ".join(map(str, status.shape))
         points = counted(status.size, "point") + (f" ({shape})" if status.ndim > 1 else "")
         lines = [f"{self.attribute('tf')}: {self.of} at {points}"]
-        for each in self.parameters:
+        for each in self.shown:
             unit = f" {each.unit}" if each.unit else ""
             drawn = each.dims == ("draw",)
             how = ", drawn" if drawn else f", {counted(each.values.size, 'value')}"
@@ -124,6 +125,17 @@ class Sweep(Printed):
         """The coordinates that are swept parameters."""
         names = self.attribute("parameters").split()
         return tuple(each for each in self.coordinates if each.name in names)
+
+    @property
+    def shown(self) -> tuple[Labelled, ...]:
+        """The swept parameters in the units in which they print: what was declared in rpm is in rpm."""
+        declared = dict(pair.split("=") for pair in self.attribute("declared_units").split("; ") if pair)
+        return tuple(
+            replace(p, unit=unit, values=p.values / float(unit_of(unit).scale))
+            if (unit := declared.get(p.name))
+            else p
+            for p in self.parameters
+        )
 
     @property
     def counts(self) -> dict[str, int]:
@@ -188,7 +200,10 @@ def assembled(
         for name, own, values, unit, doc in named
     )
     names = " ".join(label(name) for name in design.names)
+    swept = [p for p in task.model.parameters if p.name in design.names and p.counted_in[1] != 1]
+    units = "; ".join(f"{label(p.name)}={p.written_unit}" for p in swept)
     said = {"schema": SCHEMA, "tf": "/".join(task.pair), "of": task.of, "parameters": names, **attributes}
+    said |= {"declared_units": units}
     return Sweep(tuple((k, v) for k, v in said.items() if v), tuple(coordinates), variables)
 
 

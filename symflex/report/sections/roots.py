@@ -172,6 +172,7 @@ def loop_section(study: Study) -> ChapterPart | None:
 
 
 def _gains(loop: StabilityMap) -> tuple[Block, ...]:
+    loop = loop.shown
     opening = marked(Badge("not certified", "bad"), "; ".join(loop.reasons))
     if loop.certified:
         opening = marked(Badge("certified", "good"), "All poles in the right half-plane are counted.")
