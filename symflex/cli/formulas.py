@@ -265,10 +265,10 @@ def export(spec: Specification, given: ExportOptions) -> int:
 
     --form band writes a product over the poles and zeros in a band, times a short polynomial's exponential:
     accurate up to the band's end, for the given parameter values only. C, MATLAB, Julia, JavaScript, jax and
-    array-api use this form for functions without a short formula, such as networks and tapered members.
+    array-api use this form for functions without a short formula, such as networks and tapered members;
+    a note says so, with the end of the band.
     """
     from symflex import pipeline
-    from symflex.codegen.export import Language
     from symflex.codegen.exporters import SUMMARIES
     from symflex.codegen.latex import LatexExporter
     from symflex.codegen.module_text import identifiers
@@ -293,8 +293,7 @@ def export(spec: Specification, given: ExportOptions) -> int:
         model, pairs, representation, solves=exporter.solves, is_read=given.target in ("latex", "typst")
     )
     if reason:
-        is_solved = not (model.is_distributed and isinstance(exporter, Language)) or exporter.is_open
-        note(reason if is_solved else "in band form, with the numbers of the file: the formula would be long")
+        note(reason)
     if isinstance(exporter, LatexExporter) and given.output and is_folder:
         texts, warnings = exporter.export_files(model, derived)
         for warning in warnings:
@@ -304,8 +303,8 @@ def export(spec: Specification, given: ExportOptions) -> int:
         return 4 if given.strict and warnings else 0
     stem = Path(given.output).stem if given.output else identifiers({"": Path(spec.path).stem}, ())[""]
     made = exporter.export(model, derived, stem, is_alone=not given.output)
-    for warning in made.warnings:
-        note(f"warning: {warning}")
+    for said in (*made.notes, *(f"warning: {warning}" for warning in made.warnings)):
+        note(said)
     if given.output:
         path = Path(given.output)
         files: dict[Path, str | bytes] = {path: made.archive or made.text}

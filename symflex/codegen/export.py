@@ -19,9 +19,10 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache
 from importlib import resources
-from math import isfinite
+from math import inf, isfinite
 from typing import Protocol
 
+from symflex.budget import spend
 from symflex.codegen.module_text import (
     default_value,
     described,
@@ -33,13 +34,25 @@ from symflex.codegen.module_text import (
 )
 from symflex.codegen.program.band import is_closed
 from symflex.codegen.program.nodes import Piecewise
-from symflex.codegen.program.verify import SAMPLES, Verification, choose_band, choose_programs
+from symflex.codegen.program.verify import (
+    SAMPLES,
+    Verification,
+    choose_band,
+    choose_programs,
+    frequency_text,
+)
+from symflex.errors import BudgetError
 from symflex.model import Model, ModelParameter
 from symflex.model.loss_factors import check_causal
 from symflex.transfer import AnyTransferFunction
 
 BAND = "band"  # the form of code that is a product over poles and zeros
 ACCURACY = 1e-13  # relative error of exported code above which the user is warned
+LOST = 1e-8  # that of a formula with kernels, half of a double's digits, above which the band form is better
+CLOSED_OPERATIONS = 3_000
+"""Operations of a formula with kernels up to which it is code in every language: some 110 kilobytes of C. Two
+beams have 1,000, in tension 3,000; a portal frame has 4,000, and two Timoshenko beams 12,000."""
+NO_FORMULA = "it has no short formula, and only code for numpy solves equations at every frequency"
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +61,7 @@ class Export:
 
     text: str  # the file's content
     warnings: tuple[str, ...] = ()  # what the user should know, for instance an accuracy that was not reached
+    notes: tuple[str, ...] = ()  # what is in band form, up to where and why
     companions: Mapping[str, str] = field(default_factory=dict)  # files that belong beside it, by suffix
     archive: bytes = b""  # in place of the text, where the file is no text
     name: str = ""  # of the module or main function, where the language has such
@@ -91,6 +105,7 @@ class Member:
     verification: Verification  # how well it agrees with ball arithmetic
     formula: tuple[str, ...]  # in paragraphs, or a sentence on one that is long
     is_response: bool = False  # true for the frequency response, at s = j omega
+    note: str = ""  # of a band form: where it ends, and why there is one
 
     @property
     def headline(self) -> str:
@@ -104,6 +119,11 @@ class Member:
     def parameters(self) -> tuple[ModelParameter, ...]:
         """The parameters it takes, in declared order."""
         return tuple(p for p in self.tf.model.parameters if p.name in self.program.parameters)
+
+    @property
+    def is_fixed(self) -> bool:
+        """True for a band form, which consists of numbers."""
+        return self.verification.form == BAND
 
     @property
     def key(self) -> str:
@@ -126,6 +146,11 @@ class Contents:
         public = identifiers({m.key: m.wanted for m in self.members}, reserved)
         wanted = {p.name: p.name for p in self.model.parameters}
         return public, identifiers(wanted, {*reserved, *public.values()})
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the user is told of band forms."""
+        return tuple(member.note for member in self.members if member.note)
 
     @property
     def verified(self) -> tuple[Verification, ...]:
@@ -211,13 +236,17 @@ class Language:
     summary: str  # what is made, in a line
     print: Callable[[Contents], Export]  # makes the file of its contents
     # True where generated code solves networks, follows waves along members that taper and finds roots of
-    # polynomials; elsewhere what has no short formula is written in band form, with numbers for parameters.
+    # polynomials; elsewhere what has no formula of CLOSED_OPERATIONS is written in band form.
     is_open: bool = False
     is_complex: bool = False  # true where parameters may be complex, as the imaginary unit is
     has_real: bool = False  # true where frequency responses are computed in real arithmetic
     form: str | None = None  # "band" to write all functions in band form
     up_to: Fraction | None = None  # where the band of band forms ends [Hz]
-    solves: bool = True
+
+    @property
+    def solves(self) -> bool:
+        """True to get functions of networks as equations."""
+        return self.is_open or self.form == BAND
 
     def export(
         self,
@@ -238,7 +267,7 @@ class Language:
         contents = self.contents(model, tfs, stem, is_alone=is_alone, samples=samples)
         made = self.print(contents)
         warnings = (*shortfalls(contents.verified), *made.warnings)
-        return replace(made, warnings=warnings, verified=contents.verified)
+        return replace(made, warnings=warnings, notes=contents.notes, verified=contents.verified)
 
     def contents(
         self,
@@ -254,19 +283,45 @@ class Language:
             check_causal(model, "band form" if self.form else "code in this language")
         members: list[Member] = []
         for tf in {tf.name: tf for tf in tfs}.values():
-            wanted = f"{tf.output.name}_over_{tf.input.name}"
-            if self.form == BAND or not (self.is_open or is_closed(tf)):
-                program, verification, formula = choose_band(tf, self.up_to, samples)
-                members.append(Member(tf, program, wanted, verification, tuple(map(inert, formula))))
-                continue
-            own, response = choose_programs(tf, samples, has_real=self.has_real)
-            formula = formula_of(tf)
-            members.append(Member(tf, own[0], wanted, own[1], formula))
-            if response is not None:
-                members.append(
-                    Member(tf, response[0], f"{wanted}_at", response[1], formula, is_response=True)
-                )
+            members += self._members(tf, samples)
         return Contents(model, tuple(members), stem, is_alone)
+
+    def _members(self, tf: AnyTransferFunction, samples: int) -> tuple[Member, ...]:
+        """Return a transfer function and its frequency response, where there is one, or its band form."""
+        wanted, reason = f"{tf.output.name}_over_{tf.input.name}", ""
+        if not self.is_open and not is_closed(tf):
+            reason = NO_FORMULA
+        if self.form != BAND and not reason:
+            most = inf if self.is_open else CLOSED_OPERATIONS
+            try:
+                own, response = choose_programs(tf, samples, has_real=self.has_real, most=most)
+            except BudgetError as problem:
+                if self.is_open or tf.is_rational:
+                    raise
+                spend()
+                reason = problem.diagnostics[0].message
+            else:
+                if self.is_open or tf.is_rational or (own[1].error or 0.0) <= LOST:
+                    return _members_of(tf, wanted, own, response)
+                reason = "code of its formula would overflow, or lose more than half of the digits"
+        program, verification, formula = choose_band(tf, self.up_to, samples)
+        end = frequency_text(verification.band[1])
+        note = f"{tf.name} is in band form, up to {end} and with the numbers of the file"
+        said = f"{note}: {reason}" if reason else note
+        return (Member(tf, program, wanted, verification, tuple(map(inert, formula)), note=said),)
+
+
+_Measured = tuple[Piecewise, Verification]
+
+
+def _members_of(
+    tf: AnyTransferFunction, wanted: str, own: _Measured, response: _Measured | None
+) -> tuple[Member, ...]:
+    formula = formula_of(tf)
+    value = Member(tf, own[0], wanted, own[1], formula)
+    if response is None:
+        return (value,)
+    return value, Member(tf, response[0], f"{wanted}_at", response[1], formula, is_response=True)
 
 
 def shortfalls(verified: Sequence[Verification]) -> tuple[str, ...]:

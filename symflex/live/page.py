@@ -26,13 +26,12 @@ from typing import Any, Final
 from symflex import pipeline
 from symflex.codegen.export import Contents, Member
 from symflex.codegen.javascript import JAVASCRIPT, RESERVED, javascript_module
-from symflex.codegen.program.band import is_closed
 from symflex.codegen.program.evaluate import nearest_double
 from symflex.drawing import drawing_of, render_drawing
 from symflex.errors import SymflexError
 from symflex.figures.files import inline_svg
 from symflex.letters.routh import Signs
-from symflex.live.tape import MODES, tape_of
+from symflex.live.tape import FIXED, MODES, tape_of
 from symflex.model import Model, ModelParameter
 from symflex.model.spec import TableValue, parse
 from symflex.print.forms import print_form, with_hidden
@@ -40,7 +39,6 @@ from symflex.print.html import escape_html
 from symflex.print.latex import model_labels
 from symflex.print.mathml import label_mathml, math_element, transfer_function_mathml
 from symflex.roots import Modes, PoleZeroMap, Progress, Root
-from symflex.transfer import AnyTransferFunction
 
 SCRIPTS: Final = ("discs.js", "roots.js", "page.js")  # files of the script, in their order
 FACTOR: Final = 10
@@ -132,7 +130,7 @@ def _data(
     moving = {p.name for m in contents.members for p in m.parameters}
     used = [p for p in model.settable if p.value is not None or p.name in moving]
     functions = [
-        {**_function(m, at), "tape": tape_of(m.tf, names)}
+        {**_function(m, at), "tape": {"refused": FIXED} if m.is_fixed else tape_of(m.tf, names)}
         for m, at in zip(contents.members, located, strict=True)
     ]
     # frequencies [Hz] around the roots, or the default of a frequency response
@@ -170,7 +168,7 @@ def _ends(value: float | None, p: ModelParameter) -> tuple[float, float]:
 
 def _function(member: Member, located: PoleZeroMap | str) -> dict[str, Any]:
     tf, accuracy = member.tf, member.verification.text()
-    data = {"name": tf.name, "unit": tf.unit or "", "fixed": not is_closed(tf), "accuracy": accuracy}
+    data = {"name": tf.name, "unit": tf.unit or "", "fixed": member.is_fixed, "accuracy": accuracy}
     if tf.is_reduced:
         sign, rows = Signs.of(tf).of_polynomial, [tf.ring.coefficients(h.polynomial) for h in tf.hidden]
         # Up to the second degree, coefficients of one sign keep hidden poles out of the right half-plane.
@@ -241,7 +239,7 @@ def _markup(number: int, contents: Contents, data: dict[str, Any]) -> str:
         "parameters": "\n".join(rows) or "<p>The model has no parameters.</p>",
         "options": "".join(f"<option>{name}</option>" for name in names),
         "checks": "".join(f'<label><input type="checkbox">{name}</label>' for name in names),
-        "formulas": "\n".join(_formula(m.tf) for m in contents.members),
+        "formulas": "\n".join(_formula(m) for m in contents.members),
         "n": str(number),
     }
     return re.sub(r"\{\{(\w+)\}\}", lambda m: filled[m[1]], frame)
@@ -276,10 +274,10 @@ def _as_attributes(found: re.Match[str]) -> str:
     return "".join(f' {key.strip()}="{value.strip()}"' for key, value in properties)
 
 
-def _formula(tf: AnyTransferFunction) -> str:
+def _formula(member: Member) -> str:
     """Return a transfer function in its shortest form, or a sentence where it would be long."""
-    rows = None
-    if is_closed(tf):
+    tf, rows = member.tf, None
+    if not member.is_fixed:
         form, _ = with_hidden(tf, print_form(tf))
         rows = transfer_function_mathml(tf, form)
     size = sum(len(r.left) + sum(map(len, r.pieces)) for r in rows or ())

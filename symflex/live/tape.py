@@ -50,6 +50,7 @@ from symflex.roots.passivity import energy_proof
 from symflex.transfer import AnyTransferFunction, BoundTransferFunction, TransferFunction, bind
 
 MODES = 10  # number of modes that a page follows; the edge of its window lies between that and the next ones
+FIXED = "it is evaluated by a product over its roots, whose parameters are fixed"
 ULP = 2.0**-52  # bound of the relative error of a number that is rounded to a double
 
 
@@ -78,7 +79,7 @@ def tape_of(tf: AnyTransferFunction, names: Mapping[str, str], modes: int = MODE
 def _refusal(tf: AnyTransferFunction) -> str:
     """Return why there is no tape of a function, empty where there may be one."""
     if not is_closed(tf):
-        return "it is evaluated by a product over its roots, whose parameters are fixed"
+        return FIXED
     if not tf.is_reduced or tf.is_large or tf.length > TERM_LIMIT:
         return "its polynomials would have too many terms"
     if tf.model.root is not None or tf.model.imaginary:

@@ -44,7 +44,6 @@ from symflex.transfer import AnyBoundFunction, AnyTransferFunction, BoundNested,
 from symflex.transfer.bound import Enclosed
 from symflex.transfer.nested_form import EnclosedNested
 
-CLOSED_TERMS = 60  # terms with kernels of a short formula: twice as many are some hundred kilobytes
 BEYOND, FURTHER, ENOUGH = 5, Fraction(3, 2), Fraction(6, 5)
 """How far beyond the band roots are found: in modes, and in frequencies of a band given in Hz; and how
 far beyond it the highest of as many zeros as poles has to lie."""
@@ -241,11 +240,10 @@ def _clenshaw(forge: Forge, coefficients: Sequence[float], twice: int) -> int:
 
 
 def is_closed(tf: AnyTransferFunction) -> bool:
-    """Tell whether a function is a short closed expression, not the solution of equations at every s."""
+    """Tell whether a function is a closed expression, not the solution of equations at every s."""
     if not tf.is_reduced or tf.is_rational:
         return tf.is_rational
-    is_followed = any(law.matrix for law in tf.kernels.dispersions)
-    return not tf.is_nameless and not is_followed and tf.length <= CLOSED_TERMS
+    return not tf.is_nameless and not any(law.matrix for law in tf.kernels.dispersions)
 
 
 def band_form(values: EnclosedValues, up_to: Fraction | None = None) -> BandForm:

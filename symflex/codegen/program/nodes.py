@@ -433,8 +433,17 @@ class Piecewise:
     @property
     def size(self) -> int:
         """The number of operations of ``near`` that depend on s: what an array pays for, per element."""
-        roots = [*(a.value for a in self.near.assignments), *self.near.values]
-        return sum(max(len(node.children) - 1, 0) for root in roots for node in root.walk())
+        return _operations(self.near)
+
+    @property
+    def length(self) -> int:
+        """The number of operations of all pieces that depend on s, which a file's length follows."""
+        return sum(_operations(piece.code) for piece in self.code)
+
+
+def _operations(code: Straight) -> int:
+    roots = [*(a.value for a in code.assignments), *code.values]
+    return sum(max(len(node.children) - 1, 0) for root in roots for node in root.walk())
 
 
 def lumped(

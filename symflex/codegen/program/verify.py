@@ -13,7 +13,8 @@ import numpy as np
 from flint import acb, arb
 from numpy.typing import NDArray
 
-from symflex.balls import precision
+from symflex.algebra import degree_in
+from symflex.balls import precision, value_at
 from symflex.budget import spend
 from symflex.codegen.program.band import FIRST_BITS, BandForm, EnclosedValues, band_form
 from symflex.codegen.program.build import available_forms, build_nested, build_program
@@ -24,7 +25,7 @@ from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.model import ExactValue
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.transfer import AnyBoundFunction, AnyTransferFunction, TransferFunction, bind_any
-from symflex.transfer.bound import EnclosedTransferFunction
+from symflex.transfer.bound import EnclosedTransferFunction, coefficients_in_s
 from symflex.transfer.of_model import derive_for_roots, derive_nested
 
 DEFAULT_BAND = (Fraction(1, 10), Fraction(10_000))  # hz
@@ -51,6 +52,7 @@ BESIDE_ROOTS = (0.0, 1e-9, 1e-4)  # distances from a root, relatively, at which 
 BAND_SHARE = 8  # one in so many samples shows how smooth the rest of a band form with known roots is
 ASIDE_OF_AXIS, HEIGHTS = 0.1, np.linspace(0.02, 0.98, 5)
 """Distance from the imaginary axis, and heights, in bands, at which a band form is measured too."""
+NEAR_AXIS = 1e-3  # damping ratio up to which what a formula loses at a root is measured on the axis
 AT_A_POLE = 1e-14  # distance from a pole, relatively, at which infinity may stand for the value
 TINY = 1e-307  # what is smaller has no more digits in double precision
 
@@ -94,17 +96,18 @@ def frequency_text(hertz: Fraction) -> str:
 
 
 def choose_programs(
-    tf: AnyTransferFunction, samples: int = SAMPLES, *, has_real: bool = True
+    tf: AnyTransferFunction, samples: int = SAMPLES, *, has_real: bool = True, most: float = inf
 ) -> tuple[tuple[Piecewise, Verification], tuple[Piecewise, Verification] | None]:
     """Return the program of the form with the smallest measured error, and the measurement; twice.
 
     The second one is that of the frequency response where the language ``has_real`` arithmetic for it, else
     the first. Without values recurrences are taken unless another form is much shorter.
+    Raises SF503 where a formula with kernels takes more operations than ``most``.
     """
     if tf.is_nameless and not any(law.matrix for law in tf.kernels.dispersions):
         # Exponents have no formula: the members' equations are solved, but where these are followed along x.
         (tf,) = derive_nested(tf.model, [(tf.output.name, tf.input.name)])
-    gauge = _gauge(tf, samples)
+    gauge = _gauge(tf, samples, most)
     own, programs = _choose(gauge), _real_programs(gauge)
     first = next(programs, None)
     if first is None or not has_real:
@@ -167,13 +170,15 @@ class _Gauge:
         return Verification(self.tf.name, form, error, self.band, samples, self.reason)
 
 
-def _gauge(tf: AnyTransferFunction, samples: int) -> _Gauge:
+def _gauge(tf: AnyTransferFunction, samples: int, most: float = inf) -> _Gauge:
     band = tf.model.analysis.band or DEFAULT_BAND
     missing = [p.name for p in tf.parameters if p.value is None]
     pieces = None
     if tf.is_reduced and not (tf.is_rational or tf.is_zero):
         values = {p.name: double_of(p.value) for p in tf.parameters if p.value}
         pieces = Pieces(tf, None if missing else values)
+        if most < inf and (length := pieces.of_s(series_uses(tf)[0]).length) > most:
+            raise BudgetError(Diagnostic("SF503", f"code of its formula would have {length} operations"))
     if missing:
         if not tf.is_reduced and len(missing) > NAMED:
             missing[NAMED:] = [f"and {len(missing) - NAMED} more"]
@@ -276,7 +281,8 @@ def sample_frequencies(
     enclosed = bound.enclosed(FIRST_BITS)
     if not isinstance(enclosed, EnclosedTransferFunction):
         low, high = float(band_hz[0]), float(band_hz[1])
-        return _frequencies(band_hz, samples, _extremes(bound, low, high, pieces), aside)
+        centers = [*_extremes(bound, low, high, pieces), *_meetings(bound)]
+        return _frequencies(band_hz, samples, centers, aside)
     roots = np.concatenate([[], *(_roots(polynomial.coeffs()) for polynomial, _ in enclosed.factors)])
     return _frequencies(band_hz, samples, [*(np.abs(roots.imag) / tau), *(np.abs(roots) / tau)], aside)
 
@@ -323,6 +329,29 @@ def _extremes(bound: AnyBoundFunction, low: float, high: float, pieces: Pieces |
             left, right = near[np.maximum(best - 1, 0), each], near[np.minimum(best + 1, 20), each]
         extremes += ((left + right) / 2).tolist()
     return extremes
+
+
+def _meetings(bound: AnyBoundFunction) -> list[float]:
+    """Return frequencies [Hz] on the axis where the denominator has a zero without kernels.
+
+    Where wavenumbers of different laws meet, the formula is 0/0 there, though the function is not singular.
+    """
+    if not bound.is_reduced or bound.source.model.root is not None:
+        return []
+    kernels = bound.kernels
+    named = (*kernels.wavenumbers, *(k.generator for k in kernels.kernels))
+    positions = [bound.ratio.ring.index[name] for name in named]
+    frequencies: list[float] = []
+    with precision(FIRST_BITS):
+        values = [evaluate() for _, evaluate in bound.constants]
+        for factor, exponent in bound.ratio.factors:
+            if exponent > 0 or any(degree_in(factor, i) for i in positions):
+                continue
+            terms = coefficients_in_s(factor, bound.constant_ring)
+            roots = _roots([acb(value_at(c, values.__getitem__, arb)) for c in terms])
+            near = np.abs(roots.real) < NEAR_AXIS * np.abs(roots.imag)
+            frequencies += (np.abs(roots.imag[near]) / tau).tolist()
+    return frequencies
 
 
 def _part(bound: AnyBoundFunction) -> float:

@@ -179,7 +179,7 @@ def export_section(study: Study) -> ChapterPart:
             files[beside] = content.encode()
             rows.append(((PageLink(beside, beside),), ("its header",)))
         warnings += [f"{study.stem}, {target}: {warning}" for warning in made.warnings]
-        blocks += [Notice(warning) for warning in made.warnings]
+        blocks += [Notice(said) for said in (*made.notes, *made.warnings)]
     responses = attempt(lambda: study.responses)
     if isinstance(responses, SymflexError):
         blocks.append(Notice(f"No frequency responses: {said(responses)}"))

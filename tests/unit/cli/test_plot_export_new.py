@@ -253,5 +253,5 @@ def test_a_file_and_a_figure_in_the_wrong_order_are_put_right(shell):
 @pytest.mark.slow
 def test_what_is_written_in_band_form_is_called_so(shell):
     arm = WORKED / "frames" / "two_link_arm.toml"
-    for target, said in (("c", "in band form"), ("numpy", "solved as a network")):
+    for target, said in (("c", "theta_2/tau is in band form"), ("numpy", "solved as a network")):
         assert shell("export", str(arm), "--to", target).err.startswith(said), target

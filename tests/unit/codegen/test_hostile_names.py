@@ -43,10 +43,10 @@ MADE = {}
 def _chosen_once(monkeypatch):
     """Choose the program of a transfer function, and print its formula, once for all its copies."""
 
-    def choose(tf, *_, has_real):
+    def choose(tf, *_, has_real, most):
         key = id(tf.ratio), has_real
         if key not in MADE:
-            MADE[key] = tf, choose_programs(tf, 3, has_real=has_real)
+            MADE[key] = tf, choose_programs(tf, 3, has_real=has_real, most=most)
         return MADE[key][1]
 
     def formula(tf):
