@@ -13,7 +13,7 @@ import click
 from symflex.cli.command import Command, Specification, command_of
 from symflex.cli.reporting import diagnostic_json, emit_json, listed, note, say, show, terminal_width, write
 from symflex.errors import SymflexError, refused
-from symflex.errors.diagnostic import nearest, printable
+from symflex.errors.diagnostic import counted, nearest, printable
 from symflex.expressions import Equation
 from symflex.options import AuditOptions, CheckOptions, DeriveOptions, ExportOptions, highest_frequency
 
@@ -43,6 +43,7 @@ def check(spec: Specification, given: CheckOptions) -> int:
     warnings. What was declared in cycles and is used in radians is listed.
     """
     from symflex import pipeline
+    from symflex.model.unused import free_ends
 
     model = None
     try:
@@ -62,12 +63,14 @@ def check(spec: Specification, given: CheckOptions) -> int:
     warnings = pipeline.warnings(model, equations)
     code = 3 if given.strict and warnings else 0
     names = ["/".join(pair) for pair in model.transfer_functions]
+    ends = free_ends(model)
     if given.as_json:
         document = {
             "problems": [],
             "warnings": [diagnostic_json(w) for w in warnings],
             "transfer_functions": names,
             "conversions": [_conversion_json(p) for p in model.conversions],
+            "free_ends": [{"element": use.name, "node": node} for use, node in ends],
         }
         if given.equations:
             from symflex.print.motion import motion_json
@@ -96,6 +99,8 @@ def check(spec: Specification, given: CheckOptions) -> int:
         say(listed("", printable(model.title).split(), " "))
     say(listed("", counts.split(), " "))
     say(listed("transfer functions: ", names))
+    if ends:
+        say(listed(f"{counted(len(ends), 'free end')}: ", [f"{node} of {use.name}" for use, node in ends]))
     if symbolic:
         say(listed("symbolic (no value): ", symbolic))
     for parameter in model.conversions:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
@@ -14,7 +15,9 @@ if TYPE_CHECKING:
     from symflex.model.model import Definition, Model, PlacedElement
 
 SHOWN = 4
-ALIKE = 0.8  # least ratio of difflib for a typing error: 'grond' is 0.9 like 'ground', 'round_1' 0.77
+A_SLIP = 5  # letters of a word in which one may be wrong, as in 'gripper' for 'griper'; two in twice as many
+SHORTEST = 3  # letters of a word in which one wrong letter is a typing error: 'fl' and 'fr' are both meant
+WORD = re.compile(r"\d+|[A-Z]?[a-z]+|[A-Z]+")  # the parts of a name: 'tip_left2' and 'tipLeft2' have three
 
 
 def unused(model: Model) -> tuple[Diagnostic, ...]:
@@ -71,13 +74,35 @@ def _unused_names(model: Model, used: Mapping[str, set[str]]) -> Iterator[Diagno
                 yield unused_name(kind, name, span)
 
 
-def _loose_nodes(model: Model, used: Mapping[str, set[str]]) -> Iterator[Diagnostic]:
-    read = {*used, *(r.node for source in model.inputs for r in source.nodes)}
+def free_ends(model: Model) -> tuple[tuple[PlacedElement, str], ...]:
+    """Return the ends of beams, rods and the like whose node nothing else in the model names."""
+    read, touching = _named_nodes(model, _uses(model)), _touching(model)
+    return tuple(
+        (use, reference.node)
+        for use in model.elements
+        if isinstance(use.element, LineElement)
+        for _, references in use.nodes
+        for reference in references
+        if not reference.is_ground and reference.node not in read and len(touching[reference.node]) == 1
+    )
+
+
+def _named_nodes(model: Model, used: Mapping[str, set[str]]) -> set[str]:
+    return {*used, *(r.node for source in model.inputs for r in source.nodes)}
+
+
+def _touching(model: Model) -> dict[str, dict[str, PlacedElement]]:
+    """Return, by node, the elements that touch it."""
     touching: dict[str, dict[str, PlacedElement]] = {}
     for use in model.elements:
         for _, references in use.nodes:
             for reference in references:
                 touching.setdefault(reference.node, {})[use.name] = use
+    return touching
+
+
+def _loose_nodes(model: Model, used: Mapping[str, set[str]]) -> Iterator[Diagnostic]:
+    read, touching = _named_nodes(model, used), _touching(model)
     everything = [n.name for n in model.nodes]
     for node in model.nodes:
         uses = tuple(touching.get(node.name, {}).values())
@@ -108,10 +133,27 @@ def _loose_nodes(model: Model, used: Mapping[str, set[str]]) -> Iterator[Diagnos
 
 
 def _looks_like(name: str, other: str) -> bool:
-    """Tell whether two names have the same letters, or nearly those of the ground, as which none is named."""
-    letters, others = (sorted(each.lower().replace("_", "")) for each in (name, other))
-    if letters == others:
-        return True
-    from difflib import get_close_matches  # most models have a use for all their names
+    """Tell whether one name is hardly meant beside another: the same letters, or one word with a slip.
 
-    return other == "ground" and bool(get_close_matches(name.lower(), [other], cutoff=ALIKE))
+    Numbers and short words tell nodes apart: 'tip_1' and 'tip_2', 'fl' and 'fr' are meant as they stand.
+    """
+    if name.lower().replace("_", "") == other.lower().replace("_", ""):
+        return True
+    one, two = ([word.lower() for word in WORD.findall(each)] for each in (name, other))
+    if len(one) != len(two):
+        return False
+    different = [pair for pair in zip(one, two, strict=True) if pair[0] != pair[1]]
+    return len(different) == 1 and _slipped(*different[0])
+
+
+def _slipped(word: str, other: str) -> bool:
+    """Tell whether two words have the same letters, but for one or, in long words, a few."""
+    longest = max(len(word), len(other))
+    if word.isdigit() or other.isdigit() or longest < SHORTEST:
+        return False
+    if sorted(word) == sorted(other):
+        return True
+    from difflib import SequenceMatcher  # most models have a use for all their names
+
+    same = sum(block.size for block in SequenceMatcher(None, word, other).get_matching_blocks())
+    return longest - same <= max(1, longest // A_SLIP)

@@ -285,11 +285,13 @@ def _zero_ends(equations: Equations, through: nmod_mat) -> Iterator[Diagnostic]:
 
 
 def _idle_elements(equations: Equations, driven: nmod_mat, felt: nmod_mat) -> Iterator[Diagnostic]:
-    """Yield the branches and masses that no input strains, and those no output would feel.
+    """Yield the branches, masses and line elements that no input strains, and those no output would feel.
 
     A branch changes the transfer functions by a product: what the inputs put across it times the response of
     the outputs to a force through it (Sherman and Morrison 1950). If one of them is zero, the branch is idle.
-    An expression that reads the branch's own force depends on it however little that force moves.
+    A line element does so by its stiffness at the ends, which is regular but for single frequencies (Woodbury
+    1950): it is idle if none of its ends moves, or none is felt. An expression that reads an element's own
+    force depends on it however little that force moves.
     """
     model = equations.model
     read = {n.owner for _, e in model.expressions() for n in names(e) if isinstance(n, Attribute)}
@@ -303,9 +305,10 @@ def _idle_elements(equations: Equations, driven: nmod_mat, felt: nmod_mat) -> It
         if not ends or any(v.owner in loose for v in ends):
             continue
         columns = range(len(model.inputs))
-        first, *others = ([int(driven[place[v], j]) for j in columns] for v in ends)
-        if not (any(first) if not others else first != others[0]):
-            idle.setdefault("no input strains" if others else "no input moves", []).append(use)
+        moved = [[int(driven[place[v], j]) for j in columns] for v in ends]
+        is_branch = len(ends) > 1 and not isinstance(use.element, LineElement)
+        if moved[0] == moved[1] if is_branch else not any(map(any, moved)):
+            idle.setdefault("no input strains" if is_branch else "no input moves", []).append(use)
         elif use.name not in read and not any(
             int(felt[balance[v], i]) for v in ends for i in range(len(model.outputs))
         ):
@@ -319,15 +322,16 @@ def _idle_elements(equations: Equations, driven: nmod_mat, felt: nmod_mat) -> It
 
 
 def _ends(use: PlacedElement, model: Model) -> tuple[Variable, ...]:
-    """Return what a mass or a branch stands on, without ground; nothing for all other elements."""
+    """Return what a mass, branch or line element stands on, without ground; nothing for other elements."""
     parameters = use.element.parameters
-    if len(use.nodes) != 1 or isinstance(use.element, LineElement):
-        return ()
-    if not parameters or any(p.signal for p in parameters) or use.domains[0][1] in COMPONENTS:
+    if len(use.nodes) != 1 or not parameters or any(p.signal for p in parameters):
         return ()
     nodes = {n.name: n for n in model.nodes}
     ((_, references),), domain = use.nodes, use.domains[0][1]
     live = [(r, nodes[r.node]) for r in references if not r.is_ground]
+    if domain in COMPONENTS:
+        components = use.element.ends if isinstance(use.element, LineElement) else ()
+        return tuple(Variable("node", n.name, component) for _, n in live for component in components)
     if any(domain_of(r, n) != domain for r, n in live):
         return ()
     return tuple(variable_of(r, n, domain) for r, n in live)

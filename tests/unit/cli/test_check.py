@@ -36,6 +36,7 @@ def test_json_of_a_good_specification(shell):
         "warnings": [],
         "transfer_functions": ["X/F", "V/F"],
         "conversions": [],
+        "free_ends": [],
     }
 
 
@@ -65,6 +66,19 @@ outputs.x = "r*u"
         "unit": "rad/s",
     }
     assert found[3]["declared"] is None is found[3]["value"]
+
+
+def test_free_ends_are_counted_and_named(shell):
+    line = 'EI = "9 N*m^2", rhoA = "2 kg/m", l = "1 m"'
+    arms = "".join(f'{n} = {{ type = "beam", between = ["hub", "{n}_end"], {line} }}\n' for n in ("a", "b"))
+    hub = 'hub = { type = "slider", at = "hub" }\n'
+    ends = 'symflex = 1\ninputs.F = { force = "hub.y" }\noutputs.X = "hub.y"\n'
+    (shell.folder / "arms.toml").write_text(f"{ends}[elements]\n{hub}{arms}", encoding="utf-8")
+    assert shell("check", "arms.toml").out.splitlines()[-1] == "  2 free ends: a_end of a, b_end of b"
+    assert shell("check", "arms.toml", "--json").json["free_ends"] == [
+        {"element": "a", "node": "a_end"},
+        {"element": "b", "node": "b_end"},
+    ]
 
 
 def test_json_of_a_wrong_specification_lists_the_problems_on_stdout(shell):

@@ -51,6 +51,27 @@ def test_a_mass_on_a_beam_has_an_effect_and_one_beside_it_has_none():
     assert told(elements=beam) == [("SF654", "c")]
 
 
+def test_a_member_that_hangs_on_what_nothing_moves_or_nothing_reads_has_no_effect():
+    # The rod from the held node to a misspelt one has left the model; with its end at x it has an effect.
+    line = 'E = "70 GPa", rho = "2700 kg/m^3", A = "1e-4 m^2", l = "1 m"'
+    beam = f'type = "beam", I = "1e-9 m^4", {line}'
+    frame = f'type = "frame", I = "1e-9 m^4", angle = "0.3 rad", {line}'
+    hold = 'base = { type = "fixed", at = "root" }'
+    rod = f'type = "rod", {line}'
+    for kind, end, expected in (
+        *((kind, "p", [("SF654", "arm")]) for kind in (rod, beam, frame)),
+        *((kind, "x", []) for kind in (rod, beam)),
+    ):
+        arm = f'{hold}\narm = {{ {kind}, between = ["root", "{end}"] }}'
+        assert told(elements=f"{LINK}\n{arm}") == expected, (kind, end)
+    # What a source moves and nothing reads: the rod on z follows x and acts on nothing.
+    rod = f'rod = {{ {rod}, between = ["z", "ground"] }}'
+    push = f'push = {{ type = "force_source", at = "z", f = "k*x" }}\n{rod}'
+    assert told(elements=f"{LINK}\n{push}") == [("SF654", "rod")]
+    for read in ("rod.f", "rod.u(0.5 m)"):
+        assert told(elements=f"{LINK}\n{push}", outputs=f'X = "x"\nY = "{read}"') == [], read
+
+
 def messages(**parts):
     model = pipeline.loads(CHAIN.format(**{"elements": LINK, "inputs": FORCE, "outputs": 'X = "x"'} | parts))
     return [(w.code, w.message, w.hint, w.severity) for w in pipeline.warnings(model)]

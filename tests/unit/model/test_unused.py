@@ -3,6 +3,7 @@
 import pytest
 
 from symflex import pipeline
+from symflex.model.unused import free_ends
 from tests.house.repository import ROOT, specifications
 
 PLAIN = """symflex = 1
@@ -64,6 +65,44 @@ def test_the_end_of_a_beam_is_free_unless_its_name_is_nearly_another():
         beam = f'arm = {{ type = "beam", between = ["x", "{name}"], {LINE} }}'
         found = told(elements=f'{beam}\nguide = {{ type = "slider", at = "x" }}')
         assert found == ([] if is_free else [("SF650", name)]), name
+
+
+def test_a_free_end_is_warned_of_where_its_name_is_that_of_another_node_with_a_slip():
+    slips = [
+        *(("tip", name) for name in ("top", "tp", "ttip", "tpi", "Tip")),
+        *(("gripper", name) for name in ("griper", "grippper", "gripper_")),
+        *(("arm_left", name) for name in ("arm_lefft", "amr_left", "armleft", "armLeft")),
+    ]
+    meant = [
+        ("tip", "rim"),
+        ("tip_1", "tip_2"),
+        ("n12", "n21"),
+        ("x_left", "x_right"),
+        ("fl", "fr"),
+        ("a", "b"),
+    ]
+    for node, name in [*slips, *meant]:
+        parts = f'''load = {{ type = "mass", at = "{node}", m = "m" }}
+        arm = {{ type = "beam", between = ["base", "{name}"], {LINE} }}
+        guide = {{ type = "slider", at = "base" }}'''
+        found = [w for w in warned(elements=parts, inputs=f'G = {{ force = "{node}" }}') if w[0] == "SF650"]
+        expected = [("SF650", name, f"did you mean '{node}'?")] if (node, name) in slips else []
+        assert found == expected, (node, name)
+
+
+def test_the_free_ends_are_the_ends_of_members_that_nothing_else_names():
+    member = f'between = ["{{}}", "{{}}"], {LINE}'
+    beams = "\n".join(
+        f'b_{i} = {{ type = "beam", {member.format(*ends)} }}'
+        for i, ends in enumerate((("x", "p"), ("x", "q"), ("r", "x"), ("x", "s"), ("s", "x")))
+    )
+    spring = 'two = { type = "spring", between = ["x", "loose"], k = "k" }'
+    guide = 'guide = { type = "slider", at = "x" }'
+    text = PLAIN.format(
+        parameters="", elements=f"{beams}\n{spring}\n{guide}", inputs="", outputs='Q = "q"', sections=""
+    )
+    found = free_ends(pipeline.loads(text))
+    assert [(use.name, node) for use, node in found] == [("b_0", "p"), ("b_2", "r")]
 
 
 def test_a_name_that_nothing_uses_is_told():
