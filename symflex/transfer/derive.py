@@ -198,6 +198,8 @@ class _CramerQuotients:
         num_closed, den_closed = num_closed / final, den_closed / final
         shared = shared * self._expansion.expanded(self._closure.open(final))
         denominator = self._opening(den_closed)
+        if shared.is_zero:  # a loop of gain one, once definitions are put in, that the output does not see
+            raise explain_singular(self._equations)
         if self._reduction is not None:
             return self._finish_distributed(output, given, num_closed, denominator, shared)
         if denominator.is_zero:

@@ -39,9 +39,12 @@ def explain_singular(equations: Equations) -> ModelError:
     open_unknowns = [equations.unknowns[i] for i in free]
     rows = [equations.rows[i] for i in dependent]
     constraints = [r for r in rows if r.role == "constraint"]
-    loops = [r for r in rows if r.role == "signal"]
-    nodes = [v for v in open_unknowns if v.kind == "node"]
-    if constraints:
+    # What follows from a node that floats is open, too: that node itself occurs in rows that repeat others.
+    involved = {r.about for r in rows} | {v for r in rows for v, _ in r.form.terms}
+    nodes = [v for v in open_unknowns if v.kind == "node" and (v in involved or not rows)]
+    if loop := _loop(equations, matrix, rows):
+        problem = loop
+    elif constraints:
         owners = list(dict.fromkeys(r.about.owner for r in constraints))
         names = listed([f"'{o}'" for o in owners])
         message = (
@@ -77,16 +80,36 @@ def explain_singular(equations: Equations) -> ModelError:
         message, hint = f"nothing determines {what} {names}: {verb}", _held(equations.model, nodes, hold)
         hint = _meant(equations.model, nodes, hint)
         problem = Diagnostic("SF301", message, _place(equations, nodes[0]), hint)
-    elif loops:
-        names = listed([f"'{r.about}'" for r in loops])
-        message = f"the loop through {names} is algebraic and has no unique solution: its gain is exactly one"
-        hint = "put a dynamic element or another gain into the loop"
-        problem = Diagnostic("SF303", message, _place(equations, loops[0].about), hint)
     else:
         names = listed([f"'{v}'" for v in open_unknowns])
         place = _place(equations, open_unknowns[0]) if open_unknowns else None
         problem = Diagnostic("SF304", f"nothing determines {names}", place)
     return ModelError(problem)
+
+
+def _loop(equations: Equations, matrix: nmod_mat, rows: Sequence[EquationRow]) -> Diagnostic | None:
+    """Return what is wrong with a loop of gain one, if there is one solution once its signals are given."""
+    signals = [r for r in rows if r.role == "signal"]
+    kept = [i for i, r in enumerate(equations.rows) if r not in signals]
+    given = {r.about for r in signals}
+    columns = [i for i, v in enumerate(equations.unknowns) if v not in given]
+    entries = [int(matrix[i, j]) for i in kept for j in columns]
+    opened = nmod_mat(len(kept), len(columns), entries, matrix.modulus())
+    if not signals or opened.rank() < len(columns):
+        return None
+    through: dict[str, list[str]] = {}
+    elements = {use.name: use.element.type_name for use in equations.model.elements}
+    for row in (*signals, *(r for r in rows if r.about.kind == "node")):
+        about = row.about
+        is_source = row.role == "signal" and bool(about.component)
+        noun, name = (elements[about.owner], about.owner) if is_source else (about.kind, str(about))
+        through.setdefault("signal" if noun == "value" else noun, []).append(f"'{name}'")
+    said = [f"{noun}{'s' if len(of) > 1 else ''} {listed(of)}" for noun, of in through.items()]
+    is_dynamic = any(c.depends_on(LAPLACE) for r in rows for c in r.form.coefficients)
+    what = "has" if is_dynamic else "is algebraic and has"
+    message = f"the loop through {listed(said)} {what} no unique solution: its gain is exactly one"
+    other = "another gain" if is_dynamic else "a dynamic element or another gain"
+    return Diagnostic("SF303", message, _place(equations, signals[0].about), f"put {other} into the loop")
 
 
 def _held(model: Model, nodes: Sequence[Variable], hold: str) -> str:

@@ -97,12 +97,12 @@ SAID = {
         "z",
     ),
     "an algebraic loop of gain one": (
-        LOOP.format("'e'"),
+        LOOP.format("signal 'e'"),
         "put a dynamic element or another gain into the loop",
         "e",
     ),
     "an algebraic loop of gain one through two signals": (
-        LOOP.format("'e' and 'g'"),
+        LOOP.format("signals 'e' and 'g'"),
         "put a dynamic element or another gain into the loop",
         "e",
     ),
@@ -220,7 +220,7 @@ def test_a_loop_next_to_a_field_has_the_gain_that_its_definitions_say():
         text = STRINGS + loop + string("w", ["w(0) = 0", "w(l) = e"]) + ENDS
         if gain_is_one:
             found = what_is_wrong(text)
-            assert (found.code, found.message) == ("SF303", LOOP.format("'e'")), offset
+            assert (found.code, found.message) == ("SF303", LOOP.format("signal 'e'")), offset
         else:
             assert not is_singular(pipeline.assemble(pipeline.loads(text))), offset
 
@@ -294,3 +294,56 @@ def test_an_algebraic_loop_is_pointed_at_where_an_element_bears_the_same_name():
         pipeline.derive_all(pipeline.loads(text))
     (found,) = raised.value.diagnostics
     assert (found.code, found.span.line) == ("SF303", 2)
+
+
+ACTUATED = (
+    'symflex = 1\nparameters = { m = "1 kg", k = "100 N/m", c = "2 N*s/m", d = "1 m" }\n'
+    'inputs.r = { force = "x" }\noutputs.X = "x"\n'
+)
+WITH_MASS = '[elements]\nbody = { type = "mass", at = "x", m = "m" }\n'
+ON_SPRING = '[elements]\nwall = { type = "spring", between = ["x", "ground"], k = "k" }\n'
+ON_BEAM = (
+    '[elements]\narm = { type = "beam", between = ["base", "tip"], EI = "k*d^3", rhoA = "m/d", l = "d" }\n'
+    'base = { type = "fixed", at = "base" }\nload = { type = "spring", between = ["tip.y", "x"], k = "k" }\n'
+)
+PUSH = 'push = {{ type = "force_source", at = "x", f = "{}" }}\n'
+
+
+def test_a_loop_of_signals_is_named_though_nodes_follow_from_them():
+    # One solution of each loop is free: its gain is one. Everything that u pushes is free with it, yet held.
+    for parts, signals, through in [
+        (WITH_MASS, 'u = "v"\nv = "u"', "signals 'u' and 'v'"),
+        (ON_BEAM, 'u = "v"\nv = "u"', "signals 'u' and 'v'"),
+        (WITH_MASS, 'u = "w"\nv = "u"\nw = "v"', "signals 'u', 'v' and 'w'"),
+        (WITH_MASS, 'u = "2*v"\nv = "w/6"\nw = "3*u"', "signals 'u', 'v' and 'w'"),
+        (WITH_MASS, 'u = "k*x + v"\nv = "u - k*x"', "signals 'u' and 'v'"),
+        (WITH_MASS, 'u = "u"', "signal 'u'"),
+        (ON_SPRING, 'u = "k*x"', "force_source 'push', signal 'u' and node 'x'"),
+    ]:
+        found = what_is_wrong(f"{ACTUATED}{parts}{PUSH.format('u')}[signals]\n{signals}\n")
+        assert (found.code, found.message) == ("SF303", LOOP.format(through)), signals
+        assert found.hint == "put a dynamic element or another gain into the loop", signals
+
+
+def test_a_source_that_balances_its_node_is_a_loop_and_no_floating_node():
+    found = what_is_wrong(ACTUATED + ON_SPRING + PUSH.format("k*x"))
+    assert (found.code, found.message) == ("SF303", LOOP.format("force_source 'push' and node 'x'"))
+
+
+def test_a_loop_of_gain_one_with_dynamics_is_not_called_algebraic():
+    loop = '[signals]\nu = "(0.1*s + 1)*v"\nv = "u/(1 + 0.1*s)"\n'
+    found = what_is_wrong(ACTUATED + WITH_MASS + PUSH.format("u") + loop)
+    said = "the loop through signals 'u' and 'v' has no unique solution: its gain is exactly one"
+    assert (found.code, found.message, found.hint) == ("SF303", said, "put another gain into the loop")
+
+
+def test_of_a_node_that_floats_and_one_that_follows_from_it_the_first_is_named():
+    loose = 'link = { type = "spring", between = ["p", "q"], k = "k" }\n'
+    found = what_is_wrong(f'{ACTUATED}{WITH_MASS}{loose}{PUSH.format("u")}[signals]\nu = "k*p"\n')
+    assert found.message == "nothing determines nodes 'p' and 'q': they float"
+
+
+def test_a_loop_that_only_its_definitions_close_is_refused_though_the_output_does_not_see_it():
+    loop = '[definitions]\na = "k/c"\n[signals]\nu = "a*v"\nv = "u*c/k"\n'
+    for parts in (WITH_MASS, ON_BEAM):
+        assert refused(ACTUATED + parts + PUSH.format("u") + loop).code == "SF303", parts
