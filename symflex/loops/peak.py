@@ -22,6 +22,7 @@ from symflex.balls import UndecidedError, ball, bits_for_digits, precision, sett
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.loops.axis import FIRST_RATIO, find_on_axis, joined, pieces
+from symflex.loops.delayed_limit import delayed_bound, delayed_limit
 from symflex.loops.loop_function import LoopFunction
 from symflex.options import band_ends
 from symflex.print.notebook import Printed
@@ -62,6 +63,8 @@ class Peak(Printed):
     band: Band | None  # searched; None for all frequencies
     magnitude: arb  # enclosure; infinite if a pole lies on the axis or the function grows without end
     places: tuple[arb, ...]  # [rad/s], one of which has it, as far as known; none as omega grows
+    # Frequency [rad/s] above which it may be, too; infinite if it is only approached as omega grows.
+    beyond: arb | None = None
     reasons: tuple[str, ...] = ()  # what is not proved
     h2: arb | None = None  # the H2 norm of a stable rational function
 
@@ -76,14 +79,29 @@ class Peak(Printed):
         return float(hertz(self.places[0]).mid()) if self.places else inf
 
     @property
+    def attained(self) -> bool | None:
+        """Whether a frequency has it, and not only comes near; None if infinite, or not known."""
+        if not self.magnitude.is_finite() or not self.certified or (self.beyond is None and not self.places):
+            return None
+        if self.beyond is None:
+            return True
+        return None if self.places or self.beyond.is_finite() else False
+
+    @property
     def place(self) -> str:
         """Where it is, in words."""
         more = f", or at {len(self.places) - 1} more" if self.places[1:] else ""
-        return f"at {short_hertz(self.places[0])} Hz{more}" if self.places else "as the frequency grows"
+        found = f"at {short_hertz(self.places[0])} Hz{more}" if self.places else ""
+        if self.beyond is None:
+            return found or "as the frequency grows"
+        if self.beyond.is_finite():
+            return f"{found}, or above {short_hertz(self.beyond)} Hz".removeprefix(", or ")
+        rising = "approached as the frequency grows"
+        return f"{found}, or {rising}" if found else f"{rising}, attained nowhere"
 
     def to_json_dict(self) -> dict[str, object]:
         """Return the peak in the schema ``symflex.peak/1``, ready for :func:`json.dumps`."""
-        size = real_json(self.magnitude, self.digits)
+        size, above = real_json(self.magnitude, self.digits), self.beyond
         return {
             "schema": "symflex.peak/1",
             "tf": self.tf,
@@ -93,6 +111,8 @@ class Peak(Printed):
             "infinite": size is None,
             "frequency_hz": self.frequency_hz if self.places else None,
             "omega": [real_json(omega, self.digits) for omega in self.places],
+            "attained": self.attained,
+            "or_above_hz": float(hertz(above).mid()) if above is not None and above.is_finite() else None,
             "band_hz": self.band and [float(self.band.low), float(self.band.high)],
             "certified": self.certified,
             "reasons": list(self.reasons),
@@ -237,13 +257,16 @@ def _of_polynomials(bound: BoundTransferFunction, asked: Peak) -> Peak:
         if band is None and not degree:
             sizes.append((abs(num[above.degree] / den[below.degree]), []))
         least = max((size.lower() for size, _ in sizes), key=float)
+        limit = sizes[-1][0] if band is None and not degree and level else arb(0)
+        rises = not (limit < least or any(x >= limit for x, _ in sizes[:-1]))
         top = [each for each in sizes if not each[0] < least]
         magnitude = least.union(max((size.upper() for size, _ in top), key=float))
     reasons, h2 = () if magnitude.is_finite() else ("a pole may lie on the imaginary axis",), None
     if all(pole.re < 0 for pole in poles):
         h2 = arb("inf") if degree >= 0 else settled(partial(_h2_norm, above, below, asked.digits), BITS)
+    beyond = arb("inf") if rises else None
     places = tuple(x for _, own in top for x in own)
-    return replace(asked, magnitude=magnitude, places=places, reasons=reasons, h2=h2)
+    return replace(asked, magnitude=magnitude, places=places, beyond=beyond, reasons=reasons, h2=h2)
 
 
 def _h2_norm(above: PolynomialInS, below: PolynomialInS, digits: int) -> arb:
@@ -267,7 +290,8 @@ class _Pieces:
     def __init__(self, bound: BoundTransferFunction, function: LoopFunction, asked: Peak) -> None:
         self.bound, self.function, self.asked = bound, function, asked
         self.count, self.digits = 0, min(asked.digits, MOST_DIGITS)
-        self.best, self.most = arb(0), arb(0)  # a magnitude that is reached; what bounds those far out
+        self.best, self.most = arb(0), arb(0)  # a magnitude that is come near; what bounds those far out
+        self.beyond: arb | None = None  # where those begin, if one may be as large; infinite if it is less
         self.near: list[Piece] = []  # all that may contain the peak
 
     def peak(self) -> Peak:
@@ -303,23 +327,36 @@ class _Pieces:
             falls = origin.is_real and origin.excess(rest, arb(low))[1] < 0
             places.insert(0, arb(0) if falls else arb(0).union(arb(low)))
         found = replace(self.asked, magnitude=self.best.union(self._level()), reasons=tuple(reasons))
-        return replace(found, places=tuple(bound.frequency(place) for place in places))
+        beyond = None if self.most < self.best else self.beyond
+        return replace(found, places=tuple(map(bound.frequency, places)), beyond=beyond)
 
     def _tail(self, end: float, reasons: list[str]) -> float:
         """Return a place beyond which magnitudes are below the level, which is raised if that is nowhere."""
         known = list[tuple[float, arb]]()
         far = FunctionFarOut.of(self.bound, -(-SECTORS // self.bound.sheets))
+        terms = None if far is None or self.bound.sheets > 1 else far.delayed_terms(end)
+        limit = None if terms is None else delayed_limit(*terms)
+        if limit is not None:
+            self.best = self.best.max(limit.size.lower())
+        if limit is not None and limit.below_from is not None:
+            self.most, self.beyond = limit.size.upper(), arb("inf")
+            return max(end, limit.below_from)
         for radius in (end * FIRST_RATIO**i for i in range(FURTHER)):
             size = None if far is None else far.size(radius)
+            most = None if terms is None else delayed_bound(*terms, radius)
             if size is not None and size.power <= 0:
-                known.append((radius, (size.most * arb(radius) ** ball(size.power)).upper()))
-                if known[-1][1] < self._level():
+                own = (size.most * arb(radius) ** ball(size.power)).upper()
+                most = own if most is None else own.min(most)
+            if most is not None:
+                known.append((radius, most))
+                if most < self.best:
                     return radius
         if not known:
             place = short_hertz(self.bound.frequency(arb(end)))
             reasons.append(f"above {place} Hz no bound on the magnitude is known")
             return end
         start, self.most = known[0]
+        self.beyond = self.bound.frequency(arb(start))
         return start
 
     def _level(self) -> arb:

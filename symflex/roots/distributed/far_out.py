@@ -47,6 +47,7 @@ NO_LOSS = "waves without enough damping have poles all along the axis"
 PHASES = 128  # parts of a turn in which two sums are shown not to vanish together
 
 Terms = dict[Exponent, dict[Fraction, acb]]  # sums of exponentials, with sums of powers of s as amplitudes
+RealTerms = Mapping[Exponent, Mapping[Fraction, arb]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,6 +113,22 @@ class FunctionFarOut:
         """Return a radius from which on sizes are known, no smaller than a given one; None without one."""
         with precision(BITS):
             return _least(start, lambda radius: self.size(radius) is not None)
+
+    def delayed_terms(self, radius: float) -> tuple[RealTerms, RealTerms] | None:
+        """Return numerator and denominator as sums of delayed terms, if they are that and real, else None."""
+        with precision(BITS):
+            sides: list[Terms] = [{REAL: {Fraction(0): acb(self.unit)}}, {REAL: {Fraction(0): acb(1)}}]
+            for function, exponent in self.factors:
+                powers = None if any(law.wavenumbers for law in function.laws) else function.powers(radius)
+                if powers is None or not all(argument.is_delay for argument in powers[1]):
+                    return None
+                for _ in range(abs(exponent)):
+                    sides[exponent < 0] = _product(sides[exponent < 0], powers[0])
+            if not all(c.imag == 0 for side in sides for own in side.values() for c in own.values()):
+                return None
+            real = ({e: {p: c.real for p, c in own.items() if c != 0} for e, own in x.items()} for x in sides)
+            above, below = ({e: own for e, own in side.items() if own} for side in real)
+            return above, below
 
     def size(self, radius: float) -> SizeFarOut | None:
         """Return the size from a radius [rad/s] on, where there is no pole; None where that is not known."""

@@ -201,6 +201,67 @@ def test_a_band_ends_at_its_ends():
     assert refusal(lag.peak, 12, ("2 Hz", "1 Hz")) == "UsageError SF902"
 
 
+# By hand: what is approached and, as the rational factors stay below 1 on the axis, attained nowhere.
+APPROACHED = (
+    ("s/(s + 1)", 1),
+    ("s/(s + 1)*exp(-s)", 1),
+    ("s/(s + 1)*(1 + exp(-s)/2)", 1.5),
+    ("(1 - exp(-s)/2)*s/(s + 1)", 1.5),
+    ("s/(s + 1) + exp(-s)/2", 1.5),
+    ("exp(-s)/2 - s^2/(s^2 + 3*s + 1)", 1.5),
+    ("s/(s + 1)*(1 + exp(-s)/2 + exp(-2*s)/5)", 1.7),
+    ("s/(s + 1)*(1 + exp(-s)/2 + exp(-pi*s)/5)", 1.7),  # two delays without common measure
+    ("1/(1 - exp(-s)/2*s/(s + 1))", 2),
+    ("(1 + exp(-s)/2)/(1 - exp(-s)/2*s/(s + 1))*s/(s + 1)", 3),
+    ("7*s/(s + 1000)*(1 - exp(-s/1000)/7)", 8),
+)
+
+
+def test_a_supremum_that_is_approached_and_attained_nowhere_is_called_that():
+    for text, size in APPROACHED:
+        peak = function(text).peak()
+        assert peak.certified and holds(peak.magnitude, size) and peak.magnitude.rel_accuracy_bits() > 40, (
+            text
+        )
+        assert peak.attained is False and peak.places == () and peak.frequency_hz == inf, text
+        assert "approached as the frequency grows, attained nowhere" in " ".join(str(peak).split()), text
+        written = json.loads(json.dumps(peak.to_json_dict()))
+        assert (written["attained"], written["omega"], written["or_above_hz"]) == (False, [], None), text
+
+
+def test_a_magnitude_that_some_frequency_has_is_attained():
+    for text, omega in [("1/(s + 1)", 0), ("(1 - s)/(1 + s)", 0), ("(s + 2)/(s + 1)*(1 + exp(-s)/2)", 0)]:
+        peak = function(text).peak()
+        assert peak.attained is True and peak.frequency_hz == omega and peak.beyond is None, text
+    assert function("1/(s^2 + 4)").peak().attained is None
+    assert function("s/(s + 1)").peak(band=(1, 2)).attained is True
+
+
+def test_a_magnitude_that_may_be_larger_above_a_frequency_is_said_to_be():
+    # At z = exp(-s) = 1 the limit is 15/13; that it is the largest is not proved, as 1 + z/2 is largest there
+    # and 1 + 3 z/10 least at z = -1.
+    peak = function("s/(s + 1)*(1 + exp(-s)/2)/(1 + 3*exp(-s)/10)").peak()
+    assert peak.certified and peak.attained is None and peak.magnitude.contains(15 / 13)
+    assert f"or above {peak.to_json_dict()['or_above_hz']:.6g} Hz" in " ".join(str(peak).split())
+
+
+def test_a_delay_beside_what_falls_off_is_bounded_far_out():
+    peak = function("1/(s + 1) + exp(-2*s)").peak()
+    assert peak.certified and peak.attained and holds(peak.magnitude, 2)
+
+
+def test_peaks_of_a_loop_that_are_attained_nowhere_are_called_that():
+    # L = K s/(s + 1) exp(-s T): at most K, which it comes near far up, with every phase.
+    peaks = loop("K*s/(s + 1)*exp(-s*T)", K="2/5", T=0.5).stability("K", peaks=True).proved.peaks
+    for peak, size in (
+        (peaks.sensitivity, 5 / 3),
+        (peaks.complementary_sensitivity, 2 / 3),
+        (peaks.balanced, 7 / 3),
+    ):
+        assert peak.attained is False and holds(peak.magnitude, size)
+    assert "approached as the frequency grows" in peaks.rows[0][2]
+
+
 def loop(text, **parameters):
     signals = {"y": f"{text}*(r - y)"}
     return symflex.Model(parameters=parameters, signals=signals, inputs={"r": {}}, outputs={"Y": "y"})
