@@ -272,11 +272,19 @@ class TransferFunction(_Derived):
         """
         return dimensionless_of(self.exact)
 
-    def short(self, bound: Stated, spread: Stated | None = None) -> Form:
+    def short(self, bound: Stated = "1 %", spread: Stated | None = None) -> Form:
         """Return a shorter formula, with the changes of coefficients, roots and magnitude that are proved.
 
         No coefficient of s changes by more than ``bound``, ``0.01`` or ``"1 %"``, at the values or over the
         spread of each parameter, or ``spread`` of all. Raises ModelError: SF229 when one has no value.
+
+        Examples
+        --------
+        >>> from symflex import Model
+        >>> parts = {"m": "2 kg", "d": "1 g", "b": "3 kg/s"}
+        >>> drag = Model(parameters=parts, inputs={"F": {}}, outputs={"V": "F/((m + d)*s + b)"})
+        >>> drag.transfer_function("V", "F").short().den
+        b + m*s
         """
         from symflex.letters.short import approximation  # imports the search of roots
 

@@ -176,6 +176,23 @@ def test_the_zpk_form_has_the_asked_digits(colocated):
     assert sympy.LC(colocated.form("zpk", 4).num, sympy.Symbol("s")) == sympy.Rational("0.01667")
 
 
+def test_parts_of_short_forms_are_expressions_in_the_names_below_them():
+    # By hand: what is less than 1 % of its coefficient goes, also in definitions and within functions.
+    values = {"k": "100 N/m", "d": "0.1 N/m", "m": "2 kg", "b": "3 kg/s", "phi": "0.5 rad", "e": "1 mrad"}
+    k, m, b, phi = sympy.symbols("k m b phi", positive=True)
+    s = sympy.Symbol("s")
+    for definitions, output, expected in [
+        ({}, "F/(m*s^2 + b*s + k + d)", 1 / (m * s**2 + b * s + k)),
+        ({"w": "sqrt((k + d)/m)"}, "w^2/(s^2 + w^2)/k*F", k / m / (s**2 + k / m) / k),
+        ({"c": "cos(phi + e)"}, "c*F/(m*s^2 + k*c)", sympy.cos(phi) / (m * s**2 + k * sympy.cos(phi))),
+        ({}, "exp(-s*b/k)*F/(m*s^2 + k + d)", sympy.exp(-s * b / k) / (m * s**2 + k)),
+    ]:
+        given = {"parameters": values, "definitions": definitions, "inputs": {"F": {"unit": "N"}}}
+        form = symflex.Model(**given, outputs={"X": output}).transfer_function("X", "F").short()
+        assert form.expr == form.num / form.den, output
+        assert sympy.simplify(form.expr.subs(dict(form.where)) - expected) == 0, output
+
+
 def test_an_unknown_form_is_a_usage_error(colocated):
     with pytest.raises(symflex.SymflexError, match="did you mean 'factored'"):
         colocated.form("factord")
