@@ -19,6 +19,7 @@ import shutil
 import subprocess
 import tempfile
 import zipfile
+from collections.abc import Mapping
 from dataclasses import replace
 from hashlib import sha256
 from importlib import resources
@@ -34,6 +35,7 @@ from symflex.codegen.sampled import SampledLanguage, StepFile
 
 OLD = (1980, 1, 1, 0, 0, 0)  # when all files of an archive were written: the same model gives the same bytes
 COMPILER = ("cc", "-shared", "-fPIC", "-O2", "-std=c99", "-ffp-contract=off", "-fvisibility=hidden")
+TIME = "time"  # the independent variable
 NOT_COMPILED = "no C compiler was found: the unit contains sources, but no binary"
 
 
@@ -63,14 +65,26 @@ def fmu(file: StepFile) -> Export:
     with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as made:
         for path, content in files.items():
             made.writestr(zipfile.ZipInfo(path, OLD), content)
-    warnings = () if binary is not None else (NOT_COMPILED,)
-    return Export(source, warnings, archive=archive.getvalue(), name=name)
+    warnings = [
+        f"{what} is called {given} in the unit, whose variables need names of their own"
+        for what, given in _variables(file).items()
+        if what.split(" ", 1)[1] != given
+    ]
+    warnings += [] if binary is not None else [NOT_COMPILED]
+    return Export(source, tuple(warnings), archive=archive.getvalue(), name=name)
 
 
 def _places(file: StepFile) -> tuple[list[str], list[str]]:
     """Return the names of inputs and outputs, in the order in which they are used."""
     sources = dict.fromkeys(f.tf.input.name for f in file.functions)
     return list(sources), list(dict.fromkeys(f.tf.output.name for f in file.functions))
+
+
+def _variables(file: StepFile) -> Mapping[str, str]:
+    """Return what ``input u`` and ``output y`` are called; an output may bear the name of an input."""
+    inputs, outputs = _places(file)
+    wanted = {f"input {name}": name for name in inputs} | {f"output {name}": name for name in outputs}
+    return identifiers(wanted, {TIME})
 
 
 def _source(file: StepFile) -> str:
@@ -107,16 +121,19 @@ def _description(file: StepFile, name: str, token: str) -> str:
     inputs, outputs = _places(file)
     sample = float(file.sampling.sample)
     model = file.model
-    units = {i.name: i.unit for i in model.inputs} | {o.name: o.unit for o in model.outputs}
-    used = [u for u in dict.fromkeys(units.get(n, "") for n in (*inputs, *outputs)) if u]
-    places = [(n, "input") for n in inputs] + [(n, "output") for n in outputs]
+    units = {f"input {i.name}": i.unit for i in model.inputs}
+    units |= {f"output {o.name}": o.unit for o in model.outputs}
+    names = _variables(file)
+    used = [u for u in dict.fromkeys(units.get(what, "") for what in names) if u]
     variables = []
-    for reference, (own, causality) in enumerate(places, 1):
-        unit = f" unit={quoteattr(units[own])}" if units.get(own) else ""
+    for reference, (what, given) in enumerate(names.items(), 1):
+        causality, own = what.split(" ", 1)
+        more = f" unit={quoteattr(units[what])}" if units.get(what) else ""
+        more += "" if given == own else f" description={quoteattr(what)}"
         start = ' start="0"' if causality == "input" else ""
         variables.append(
-            f'    <Float64 name={quoteattr(own)} valueReference="{reference}" causality="{causality}" '
-            f'variability="discrete"{unit}{start}/>'
+            f'    <Float64 name="{given}" valueReference="{reference}" causality="{causality}" '
+            f'variability="discrete"{more}{start}/>'
         )
     return "\n".join(
         [
@@ -130,7 +147,8 @@ def _description(file: StepFile, name: str, token: str) -> str:
             *(["  </UnitDefinitions>"] if used else []),
             f'  <DefaultExperiment startTime="0" stepSize="{sample!r}"/>',
             "  <ModelVariables>",
-            '    <Float64 name="time" valueReference="0" causality="independent" variability="continuous"/>',
+            f'    <Float64 name="{TIME}" valueReference="0" causality="independent"',
+            '      variability="continuous"/>',
             *variables,
             "  </ModelVariables>",
             "  <ModelStructure>",

@@ -150,8 +150,8 @@ class DifferenceExporter:
             measured, warning = equation.measured()
             warnings += [warning] if warning else []
             functions.append(StepFunction(tf, equation, names[tf.name], measured))
-        file = StepFile(model, functions, self.sampling, None if is_alone else stem)
-        return replace(self.language.print(file), warnings=tuple(warnings))
+        made = self.language.print(StepFile(model, functions, self.sampling, None if is_alone else stem))
+        return replace(made, warnings=(*warnings, *made.warnings))
 
 
 def _shown(pole: acb) -> str:

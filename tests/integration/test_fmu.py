@@ -55,6 +55,19 @@ def test_a_unit_takes_the_steps_of_the_certified_response(name, tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.needs_module("fmpy")
+def test_a_unit_of_a_model_with_an_input_called_time_is_valid(tmp_path):
+    from fmpy import read_model_description
+    from fmpy.validation import validate_fmu
+
+    text = 'symflex = 1\ninputs = { time = {}, u = {} }\noutputs = { u = "time/(s + 1)", time = "u/s" }'
+    path = unit(symflex.loads(text).resolved, tmp_path)
+    assert validate_fmu(path) == []
+    names = [v.name for v in read_model_description(path, validate=True).modelVariables]
+    assert names == ["time", "time_", "u", "u_", "time_2"]
+
+
+@pytest.mark.slow
+@pytest.mark.needs_module("fmpy")
 def test_two_inputs_add_up_and_states_can_be_restored(tmp_path):
     from fmpy import extract, read_model_description
     from fmpy.fmi3 import FMU3Slave

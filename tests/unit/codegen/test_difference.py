@@ -1,14 +1,17 @@
 """Difference equations: generated code runs a controller, in C and in Python."""
 
 import ctypes
+import io
 import re
 import runpy
 import subprocess
+import zipfile
 from collections import Counter
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
 from random import Random
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -16,7 +19,7 @@ from flint import acb, arb
 from scipy.integrate import solve_ivp
 from scipy.signal import lfilter
 
-from symflex import loads
+from symflex import Model, loads
 from symflex.analysis.sampling import sampled_transfer_function
 from symflex.codegen import fmu
 from symflex.codegen.difference import DifferenceEquation, difference_equation
@@ -265,3 +268,28 @@ def test_names_of_a_sampled_language_are_identifiers_of_their_own(target, spring
     assert len(steps) == len(names)
     assert len(set(steps.values())) == 1
     assert all(re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) for name in steps)
+
+
+def test_the_variables_of_a_unit_have_names_of_their_own(monkeypatch):
+    # FMI 3.0, section 2.4.7: names are unique, and the independent variable has one, too.
+    monkeypatch.setattr(DifferenceEquation, "measured", lambda _: ("Rounding costs nothing.", None))
+    monkeypatch.setattr(fmu, "_compiled", lambda _: b"")
+    for inputs, output, expected in [
+        ("u", "y", ["u", "y"]),
+        ("time", "y", ["time_", "y"]),
+        ("u", "time", ["u", "time_"]),
+        ("time", "time", ["time_", "time_2"]),
+        ("u", "u", ["u", "u_"]),
+        ("time time_", "y", ["time_2", "time_", "y"]),
+    ]:
+        names = inputs.split()
+        model = Model(inputs={n: {} for n in names}, outputs={output: f"({' + '.join(names)})/s"}).resolved
+        exporter = DifferenceExporter(SAMPLED["fmu"], Sampling(Fraction(1, 100), "zoh"))
+        made = exporter.export(model, derive_all(model), "unit", is_alone=False)
+        archive = zipfile.ZipFile(io.BytesIO(made.archive))
+        described = ElementTree.fromstring(archive.read("modelDescription.xml"))
+        variables = described.findall("ModelVariables/Float64")
+        assert [v.get("name") for v in variables] == ["time", *expected], (inputs, output)
+        assert [v.get("causality") for v in variables[1:]] == [*["input"] * len(names), "output"]
+        renamed = [a for a, b in zip([*names, output], expected, strict=True) if a != b]
+        assert [w.split()[1] for w in made.warnings] == renamed, (inputs, output)
