@@ -7,14 +7,14 @@ from dataclasses import replace
 from importlib import import_module
 from typing import Any
 
-from symflex.algebra import degree_in
+from symflex.algebra import LAPLACE, degree_in
 from symflex.errors import Diagnostic, InternalError, UsageError, nearest, no_such, refused
 from symflex.expressions import Expression, Name, Number, Sum, format_expression, names, nodes, quotient
 from symflex.print.forms.arrange import Arranged, Arranger, length, reading
 from symflex.print.forms.definitions import definitions_form, shows_origin
 from symflex.print.forms.hidden import hidden_expressions, with_hidden
 from symflex.print.forms.naming import Naming, names_of
-from symflex.print.forms.notation import reachable
+from symflex.print.forms.notation import plain_printer, reachable
 from symflex.print.forms.polynomial import (
     constant_form,
     factored_draft,
@@ -109,7 +109,11 @@ def print_form(
     """
     made = _arranged(tf, form, digits, arranged)
     read_back(tf, made, digits if made.name in DECIMAL_FORMS else None)
-    return made if tf.model.root is None else made.in_roots(tf.model.root)
+    if tf.model.root is None:
+        return made
+    written = {d.name: d.expression for d in tf.model.definitions if d.name in made.definitions}
+    made = made.in_roots(tf.model.root)
+    return replace(made, where=tuple((name, written.get(name, e)) for name, e in made.where))
 
 
 def _arranged(
@@ -239,8 +243,12 @@ def _explained(tf: TransferFunction, made: PrintedForm) -> PrintedForm:
         made = shaped(tf.model, made)
     explained = {name for name, _ in made.where}
     parts = (made.num, made.den, *(e for _, e in made.where), *(law for _, law in (*made.laws, *made.closed)))
-    definitions = ((d.name, d.expression) for d in tf.model.definitions if d.name not in explained)
-    lines = reachable(parts, definitions)
+    meanings = {d.name: d.expression for d in tf.model.definitions if d.name not in explained}
+    if tf.model.root is not None:  # a form is arranged, and read back, in the root of s
+        printer = plain_printer(tf, tf.base)
+        values = {n: v for n, v in tf.definitions if n in meanings and v.depends_on(LAPLACE)}
+        meanings |= {n: printer.quotient(value) for n, value in values.items()}
+    lines = reachable(parts, meanings.items())
     return replace(made, where=(*made.where, *lines), definitions=frozenset(name for name, _ in lines))
 
 

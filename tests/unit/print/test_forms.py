@@ -881,3 +881,28 @@ def test_a_definition_is_not_repeated_unless_something_in_it_means_another_thing
         *("q as above", "P = a*s^2", "T = P + b"),
         *("q as above", "P = a*s", "T = P + b"),
     ]  # fmt: skip
+
+
+def test_definitions_beside_roots_of_s_print_as_they_are_written():
+    # By hand: (m s^2 + K) x = F; the sums are those of the file.
+    for definitions, k, output, expected in [
+        ('d = "1 + s"', "k*d", "s^(1/2)*x", "sqrt(s)/(m*s^2 + k*d); d = 1 + s"),
+        ('d = "1 + s", e = "d*(q + s)"', "k*e", "sqrt(s)*x",
+         "sqrt(s)/(m*s^2 + k*e); d = 1 + s; e = d*(q + s)"),
+        ('d = "(1 + s)/(s + q)"', "k*d", "sqrt(s)*x", "sqrt(s)*(s + q)/(m*s^2*(s + q) + k*s + k)"),
+        ('d = "q + s"', "k*d", "s^0.3*x", "s^0.3/(m*s^2 + k*d); d = q + s"),
+        ('w = "sqrt(k/m)", d = "s + w"', "k*d", "sqrt(s)*x",
+         "sqrt(s)/(m*s^2 + k*d); w = sqrt(k/m); d = s + w"),
+        ('d = "1 + s"', "k", "sqrt(s)/d*x", "sqrt(s)/(d*(m*s^2 + k)); d = 1 + s"),
+    ]:  # fmt: skip
+        text = f"""symflex = 1
+parameters = {{ m = 2, k = 3, q = 5 }}
+definitions = {{ {definitions} }}
+inputs.F = {{ force = "x" }}
+outputs.X = "{output}"
+elements.body = {{ type = "mass", at = "x", m = "m" }}
+elements.wall = {{ type = "spring", between = ["x", "ground"], k = "{k}" }}
+"""
+        form = print_form(tf_of(text, "X", "F"))
+        lines = [f"{name} = {format_expression(line)}" for name, line in form.where]
+        assert "; ".join([format_expression(quotient(form.num, form.den)), *lines]) == expected, text
