@@ -18,7 +18,7 @@ from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import ceil, log
+from math import ceil, isfinite, log
 from typing import TYPE_CHECKING
 
 from flint import acb, arb
@@ -148,7 +148,8 @@ def roots_about(cramer: CramerEquations, s: acb) -> tuple[int | None, int | None
                 (b, v.abs_upper()) for b, v in zip(bounds, (first.den, first.num), strict=True) if v != 0
             ]
             beyond = max((b - float(size.log().mid()) for b, size in sizes), default=0.0)
-            count = SPARE + ceil(beyond / (WIDER * log(2)))
+            # Next to a pole of what a member is made of there is no bound.
+            count = SPARE + ceil(beyond / (WIDER * log(2))) if isfinite(beyond) else MOST_POINTS + 1
             if count > MOST_POINTS:
                 break
             turns = (acb(0, 2 * arb.pi() * k / count).exp() for k in range(1, count))

@@ -906,3 +906,28 @@ elements.wall = {{ type = "spring", between = ["x", "ground"], k = "{k}" }}
         form = print_form(tf_of(text, "X", "F"))
         lines = [f"{name} = {format_expression(line)}" for name, line in form.where]
         assert "; ".join([format_expression(quotient(form.num, form.den)), *lines]) == expected, text
+
+
+def test_a_long_form_with_a_root_of_s_is_printed():
+    # Sums of blocks stay as written where one fraction is long, but not with roots of s.
+    blocks = " + ".join(f"a_{i}/(s^2 + b_{i}*s + c_{i})" for i in range(6))
+    letters = ", ".join(f"{x}_{i} = {i + 2}" for x in "abc" for i in range(6))
+    for output in (f"s^(1/2)*({blocks})*u", f"({blocks} + 1/(1 + sqrt(s)))*u"):
+        text = f'symflex = 1\nparameters = {{ {letters} }}\ninputs.u = {{}}\noutputs.y = "{output}"\n'
+        form = print_form(tf_of(text, "y", "u"))
+        assert "sqrt(s)" in format_expression(quotient(form.num, form.den)), output
+
+
+def test_a_root_of_s_before_a_rotation_of_a_field_prints():
+    text = """symflex = 1
+parameters = { kGA = "1e5 N", EI = "40 N*m^2", r = "2 kg/m", J = "1e-3 kg*m", l = "1 m" }
+inputs.F = { unit = "N" }
+outputs.Y = "s^(1/2)*phi'(0)"
+[fields.b]
+unknowns = ["w", "phi"]
+domain = ["0 m", "l"]
+equations = ["kGA*(w'' - phi') = r*s^2*w", "EI*phi'' + kGA*(w' - phi) = J*s^2*phi"]
+conditions = ["w(0) = 0", "phi(0) = 0", "phi'(l) = 0", "kGA*(w'(l) - phi(l)) = F"]
+"""
+    form = print_form(tf_of(text, "Y", "F"))
+    assert "sqrt(s)" in format_expression(form.num) + format_expression(form.den)

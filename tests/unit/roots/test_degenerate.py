@@ -7,10 +7,14 @@ Axial force and rotary inertia resist the turn, not the translation.
 """
 
 from fractions import Fraction
+from math import inf
+from types import SimpleNamespace
+
+from flint import acb
 
 from symflex import pipeline
 from symflex.roots import Band
-from symflex.roots.degenerate import DegeneratePoints, degenerate_points
+from symflex.roots.degenerate import DegeneratePoints, degenerate_points, roots_about
 from symflex.roots.locate import locate
 from tests.unit.roots.stand_ins import places
 
@@ -81,3 +85,10 @@ def test_a_hidden_turn_is_listed_among_the_roots_with_its_place_and_in_the_verdi
     assert places(h.root for h in found.hidden) == [(0, 3, 1), (0, -3, 1)]
     assert places(found.poles) == [(0, 3, 1), (0, -3, 1)]
     assert found.certificate.certified
+
+
+def test_roots_are_not_counted_about_a_point_next_to_which_no_bound_is_known():
+    # As next to a pole of a member's stiffness.
+    one = SimpleNamespace(den=acb(1), num=acb(1))
+    unbounded = SimpleNamespace(bounds_on=lambda _: (inf, inf), at=lambda *_: one)
+    assert roots_about(unbounded, acb(-2)) == (None, None)
