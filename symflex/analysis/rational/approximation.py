@@ -13,7 +13,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from math import inf, isfinite, pi
+from math import inf, isfinite, nan, pi
 from typing import TYPE_CHECKING
 
 import mpmath
@@ -62,6 +62,8 @@ class BandError:
         How many frequencies were sampled.
     is_rigorous : bool
         Whether ``worst`` bounds the error between the samples too.
+    filled_hz : tuple of float
+        Antiresonances [Hz] beside which the error would be larger if their dips were not filled.
     """
 
     low_hz: float
@@ -70,6 +72,7 @@ class BandError:
     worst_at_hz: float
     samples: int
     is_rigorous: bool = False
+    filled_hz: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,10 +87,12 @@ class ErrorScan:
     frequency_hz: npt.NDArray[np.float64]  # frequency_hz, error: increasing frequencies, errors there
     error: npt.NDArray[np.float64]
     at: Callable[[float], float]  # the error at a frequency [Hz]
+    plain: npt.NDArray[np.float64]  # ``|R - G|/|G|``, dips not filled
+    dip_hz: npt.NDArray[np.float64]  # frequency of the zero in whose dip a sample is; nan outside of all
 
     def __post_init__(self) -> None:
-        self.frequency_hz.setflags(write=False)
-        self.error.setflags(write=False)
+        for array in (self.frequency_hz, self.error, self.plain, self.dip_hz):
+            array.setflags(write=False)
 
     @property
     def is_rigorous(self) -> bool:
@@ -110,7 +115,19 @@ class ErrorScan:
         frequencies = np.concatenate(([low_hz], self.frequency_hz[inside], [high_hz]))
         errors = np.concatenate(([self.at(low_hz)], self.error[inside], [self.at(high_hz)]))
         i = int(np.argmax(errors))
-        return BandError(low_hz, high_hz, float(errors[i]), float(frequencies[i]), len(errors))
+        filled = self._dips(inside & (self.plain > errors[i]))
+        found = float(errors[i]), float(frequencies[i]), len(errors)
+        return BandError(low_hz, high_hz, *found, filled_hz=filled)
+
+    def outside(self, tolerance: float) -> tuple[float, ...]:
+        """Return the antiresonances [Hz] below :meth:`valid_to` beside which ``|R - G|/|G|`` is larger.
+
+        All these frequencies are within a tenth of the antiresonance.
+        """
+        return self._dips((self.plain > tolerance) & (self.frequency_hz <= self.valid_to(tolerance)))
+
+    def _dips(self, samples: npt.NDArray[np.bool_]) -> tuple[float, ...]:
+        return tuple(np.unique(self.dip_hz[samples & ~np.isnan(self.dip_hz)]).tolist())
 
     def valid_to(self, tolerance: float) -> float:
         """Return the frequency [Hz] up to which no sample exceeds the tolerance.
@@ -152,29 +169,35 @@ def scan_error(
     on_axis = np.array(
         [float(root.im.mid()) for root in roots.poles if root.on_imaginary_axis and root.im > 0]
     )
-    error_at = partial(_error_at, bound, approximation, zeros, on_axis)
+    errors_at = partial(_errors_at, bound, approximation, zeros, on_axis)
     frequencies = adaptive_grid(bound, low_hz, high_hz, POINTS, roots) / (2 * np.pi)
-    errors = np.array([error_at(f) for f in frequencies.tolist()])
-    return ErrorScan(frequencies, errors, error_at)
+    found = np.array([errors_at(f) for f in frequencies.tolist()])
+    return ErrorScan(frequencies, found[:, 0], lambda f: errors_at(f)[0], found[:, 1], found[:, 2])
 
 
-def _error_at(
+def _errors_at(
     bound: AnyBoundFunction,
     approximation: Callable[[complex], complex],
     zeros: npt.NDArray[np.complex128],
     on_axis: npt.NDArray[np.float64],
     frequency_hz: float,
-) -> float:
+) -> tuple[float, float, float]:
+    """Return the error with dips filled, that without, and the frequency of the dip [Hz], else nan."""
     omega = 2 * np.pi * frequency_hz
-    near = on_axis[np.abs(on_axis - omega) < AXIS_GAP * on_axis]
+    gaps = np.abs(1j * omega - zeros) / np.abs(zeros)
+    nearest = zeros[int(np.argmin(gaps))] if gaps.size and gaps.min() < DIP else None
+    dip = nan if nearest is None else float(abs(nearest)) / (2 * np.pi)
+    edges = on_axis if nearest is None or nearest.real != 0 else np.append(on_axis, abs(nearest))
+    near = edges[np.abs(edges - omega) < AXIS_GAP * edges]
     s = 1j * (near[0] * (1 - AXIS_GAP) if near.size else omega)
     exact = bound(s)
     difference = abs(approximation(s) - exact)
     if difference == 0:
-        return 0.0
+        return 0.0, 0.0, dip
     gaps = np.maximum(np.abs(s - zeros), np.finfo(float).tiny) / np.abs(zeros)
     filled = abs(exact) * float(np.prod(np.maximum(1.0, DIP / gaps)))
-    return difference / filled if filled else float("inf")
+    error, plain = (difference / size if size else inf for size in (filled, abs(exact)))
+    return error, plain, dip
 
 
 @dataclass(frozen=True, eq=False)
@@ -262,7 +285,8 @@ class RationalApproximation(Printed, Approximant, RationalFunction):
 
     def __repr__(self) -> str:
         modes = "1 mode" if self.modes == 1 else f"{self.modes} modes"
-        limit = "exact" if self.is_exact else f"within 1 % up to {self.valid_to(0.01):.4g} Hz"
+        but = " outside antiresonances" if self.outside(0.01) else ""
+        limit = "exact" if self.is_exact else f"within 1 % up to {self.valid_to(0.01):.4g} Hz{but}"
         return f"<RationalApproximation {self.tf}: {self.form} form, {modes}, {limit}>"
 
     def passages(self) -> Iterator[Passage]:
@@ -319,6 +343,13 @@ class RationalApproximation(Printed, Approximant, RationalFunction):
         """
         return inf if self.is_exact else self.scan.valid_to(tolerance)
 
+    def outside(self, tolerance: float) -> tuple[float, ...]:
+        """Return the antiresonances [Hz] up to :meth:`valid_to` beside which ``|R - G|/|G|`` is larger.
+
+        Within a tenth of the frequency of each, the error counts as if the dip of G were filled.
+        """
+        return () if self.is_exact else self.scan.outside(tolerance)
+
     def __call__(self, s: npt.ArrayLike) -> complex | npt.NDArray[np.complex128]:
         """Return R at s [rad/s], a number or an array, in double precision."""
         points = np.asarray(s, dtype=complex)
@@ -362,12 +393,13 @@ class RationalApproximation(Printed, Approximant, RationalFunction):
         return BoundStateSpace(self.label(), arrays, states, inputs, outputs, is_minimal=True)
 
     def facts(self) -> dict[str, object]:
-        """Return the form, the modes and the frequencies up to which it is within 1 % and 5 %."""
+        """Return form, modes, the frequencies up to which it is within 1 % and 5 %, and where it is not."""
         return {
             "exact": self.is_exact,
             "form": self.form,
             "modes": self.modes,
             "valid_to_hz": {f"{percent} %": self.valid_to(percent / 100) for percent in PERCENTS},
+            "outside_hz": {f"{percent} %": list(self.outside(percent / 100)) for percent in PERCENTS},
             "valid_to_is_proved": self.is_exact,
         }
 
@@ -424,6 +456,7 @@ SCHEMA = "symflex.rational/1"
 INDENT = "  "
 ESTIMATE = "some poles or zeros could not be separated, or are not proved"
 DIGITS = 10
+SHOWN_DIPS = 3  # antiresonances that are named
 JSON_DIGITS = 17  # so many give a double back exactly
 
 Row = tuple[str, ...]
@@ -456,15 +489,27 @@ def _validity(approximation: RationalApproximation) -> list[str]:
             lines.append(f"already off by more than {percent} % at {approximation.scan.low_hz:.4g} Hz")
         else:
             least = "at least " if limit == approximation.scan.high_hz else ""
-            lines.append(f"within {percent} % of the exact function up to {least}{limit:.6g} Hz")
+            but = _outside(approximation.outside(percent / 100))
+            lines.append(f"within {percent} % of the exact function up to {least}{limit:.6g} Hz{but}")
     error, scan = approximation.error, approximation.scan
     band = f"{error.low_hz:.4g} to {error.high_hz:.4g} Hz"
-    lines.append(f"worst error from {band}: {100 * error.worst:.3g} %, at {error.worst_at_hz:.6g} Hz")
+    where = f"at {error.worst_at_hz:.6g} Hz{_outside(error.filled_hz)}"
+    lines.append(f"worst error from {band}: {100 * error.worst:.3g} %, {where}")
     sampled = f"{len(scan.error)} samples from {scan.low_hz:.4g} to {scan.high_hz:.6g} Hz"
     lines.append(f"sampled, not proved: {sampled}")
     if approximation.omitted_hz is not None:
         lines.append(f"the first pole left out is at {approximation.omitted_hz:.6g} Hz")
     return lines
+
+
+def _outside(dips_hz: Sequence[float]) -> str:
+    """Return what is said of antiresonances beside which an error is larger."""
+    if not dips_hz:
+        return ""
+    shown = ", ".join(f"{dip:.6g}" for dip in dips_hz[:SHOWN_DIPS])
+    more = f" and {len(dips_hz) - SHOWN_DIPS} more" if len(dips_hz) > SHOWN_DIPS else ""
+    noun = "antiresonance" if len(dips_hz) == 1 else "antiresonances"
+    return f", outside {100 * DIP:.0f} % of the {noun} at {shown} Hz{more}"
 
 
 def _decimal(number: mpmath.mpf, digits: int = DIGITS) -> str:
@@ -546,10 +591,12 @@ def rational_json(approximation: RationalApproximation) -> dict[str, object]:
         "valid_to_hz": {
             f"{percent} %": _finite(approximation.valid_to(percent / 100)) for percent in PERCENTS
         },
+        "outside_hz": {f"{percent} %": list(approximation.outside(percent / 100)) for percent in PERCENTS},
         "error": {
             "band_hz": [error.low_hz, error.high_hz],
             "worst": _finite(error.worst),
             "worst_at_hz": error.worst_at_hz,
+            "outside_hz": list(error.filled_hz),
             "rigorous": error.is_rigorous,
         },
         "sampled": {"low_hz": scan.low_hz, "high_hz": scan.high_hz, "samples": len(scan.error)},

@@ -6,7 +6,7 @@ from tests.unit.cli.commands import ROOT
 KEYS = {
     "schema", "tf", "quantity", "unit", "form", "modes", "exact", "certified", "gain", "num", "den", "poles",
     "zeros", "residues", "correction", "order_at_zero", "leading_coefficient", "valid_to_hz", "error",
-    "sampled", "omitted_hz", "stability",
+    "outside_hz", "sampled", "omitted_hz", "stability",
 }  # fmt: skip
 
 

@@ -11,6 +11,7 @@ import pytest
 
 from symflex import pipeline
 from symflex.analysis.rational import FORMS, approximate
+from symflex.analysis.rational.approximation import rational_json
 from symflex.errors import ModelError
 from tests.unit.analysis.rods import CLAMPED_ROD, FREE_ROD, bound, rational
 from tests.unit.analysis.systems import words
@@ -101,6 +102,29 @@ def test_validity_ends_where_the_error_reaches_the_tolerance(form, tolerance):
     # and not before, on a grid of its own; sharp poles are left out
     below = (x for x in np.linspace(1e-3, found * (1 - 1e-9), 4000) if abs(math.cos(x)) > 1e-6)
     assert max(map(error, below)) <= tolerance * (1 + 1e-9)
+
+
+@pytest.mark.parametrize(("form", "cut"), [("product", rod_product), ("modal", rod_sum)])
+def test_what_is_said_outside_antiresonances_holds_of_the_plain_relative_error(form, cut):
+    # tan(omega)/omega has its zeros at n pi, n/2 Hz.
+    R = approximate(bound(CLAMPED_ROD, "X/F"), 6, form)
+    for percent in (1, 5):
+        tolerance, limit = percent / 100, R.valid_to(percent / 100)
+        grid = np.linspace(1e-3, limit, 20001)[1:-1]
+        plain = np.array([abs(cut(2j * PI * f, 6) * 2 * PI * f / math.tan(2 * PI * f) - 1) for f in grid])
+        expected = sorted({round(2 * f) / 2 for f in grid[plain > tolerance].tolist()})
+        assert R.outside(tolerance) == pytest.approx(expected, rel=1e-9), percent
+        kept = np.all([abs(grid - zero) > 0.1 * zero for zero in (*expected, 1e9)], axis=0)
+        assert plain[kept].max() <= tolerance * (1 + 1e-9), percent
+        said = f"within {percent} % of the exact function up to {limit:.6g} Hz"
+        if expected:
+            zeros = ", ".join(f"{zero:g}" for zero in expected[:3])
+            noun = "antiresonance" if len(expected) == 1 else "antiresonances"
+            said += f", outside 10 % of the {noun} at {zeros} Hz"
+        assert said in " ".join(str(R).split()), percent
+        for told in (rational_json(R), R.facts()):
+            assert told["outside_hz"][f"{percent} %"] == list(R.outside(tolerance)), percent
+    assert rational_json(R)["error"]["outside_hz"] == list(R.error.filled_hz)
 
 
 def test_the_worst_error_at_a_pole_compares_residues():
