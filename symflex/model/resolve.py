@@ -37,6 +37,7 @@ from symflex.model.branches import with_branches
 from symflex.model.declarations import (
     DeclaredParameter,
     doubtful_units,
+    one_of,
     read_definitions,
     read_outputs,
     read_parameters,
@@ -245,6 +246,8 @@ def _with_turns_read(reader: Reader, draft: Draft) -> tuple[Draft, AsWritten]:
     quantities = declared_quantities(draft.declared, draft.inherited)
     literals = (d.expression for d in draft.definitions)
     written = [*quantities.values(), *(e.quantity for e in literals if isinstance(e, QuantityLiteral))]
+    # A pitch that a block brings may be in radians by now; a formula may still divide it by 2 pi.
+    written += [one_of(p.written_unit) for p in draft.inherited if p.written_unit]
     if not any(q is not None and q.cycles for q in written):
         return draft, AsWritten()
     from symflex.model.cycles import converted  # few models need it

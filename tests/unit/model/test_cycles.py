@@ -128,6 +128,26 @@ def test_a_frequency_of_a_model_block_means_the_same_outside(tmp_path):
     assert [(p.name, p.value, p.unit) for p in model.parameters] == [("f_c", ExactValue(Fraction(50)), "Hz")]
 
 
+def test_a_pitch_that_a_model_block_brings_may_be_divided_by_its_2_pi_or_not(tmp_path):
+    (tmp_path / "inner.toml").write_text(
+        """symflex = 1
+parameters = { p = "5 mm/rev" }
+inputs = { T = { torque = "phi" } }
+outputs = { X = "x" }
+[elements]
+rotor = { type = "inertia", at = "phi", J = "1 kg*m^2" }
+screw = { type = "transformer", from = "phi", to = "x", ratio = "p" }
+"""
+    )
+    (tmp_path / "outer.toml").write_text(
+        'symflex = 1\ninputs = { T = { unit = "N*m" } }\noutputs = { Y = "p*G*T", Z = "p/(2*pi)*G*T" }\n'
+        '[blocks]\nG = { type = "model", spec = "inner.toml", tf = "X/T" }\n'
+    )
+    model = symflex.load(tmp_path / "outer.toml")
+    values = [model.transfer_function(y, "T").bind()(POINT) for y in ("Y", "Z")]
+    assert values == pytest.approx([P**2 / POINT**2] * 2, rel=1e-12)
+
+
 def test_a_table_of_modes_in_hertz_prints_the_two_pi_beside_each_frequency():
     # The modal sum of Ewins (Modal Testing, 2000), with 2*pi*f for every angular frequency.
     modes = " + ".join(f"a_{i}/(s^2 + 2*z_{i}*f_{i}*s + f_{i}^2)" for i in (1, 2, 3))
