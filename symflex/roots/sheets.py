@@ -103,7 +103,8 @@ def _with_factors(bound: BoundTransferFunction) -> BoundTransferFunction:
         factors = (Factored.polynomial(ring, f) ** e for whole, e in value.factors for f in parts_of(whole))
         return prod(factors, start=Factored.number(ring, value.unit))
 
-    hidden = (replace(h, polynomial=f) for h in bound.hidden for f in parts_of(h.polynomial))
+    parted = ((h, f) for h in bound.hidden for f in parts_of(h.polynomial))
+    hidden = (replace(h, polynomial=f) for h, f in parted if not f.is_constant())
     parts = bound.parts and (split(bound.num), split(bound.den))
     return replace(bound, ratio=split(bound.ratio), parts=parts, hidden=tuple(hidden))
 

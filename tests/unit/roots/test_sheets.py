@@ -173,3 +173,16 @@ def test_factors_without_roots_keep_exact_places():
 def test_a_branch_point_where_the_function_is_infinite_keeps_it_from_resting():
     for plant, word in (("sqrt(s)", "marginal"), ("1/sqrt(s)", "stable"), ("sqrt(s + 1)", "stable")):
         assert located(RATIO.format(parameters="k = 1", plant=f"k*{plant}")).verdict.word == word, plant
+
+
+def test_hidden_factors_with_and_without_roots_of_s_are_told_apart():
+    # y = exp(-r)/(s + 1) R: what cancels is s + 2, and 1 - exp(-r)/3, which vanishes at r = -ln 3 + 2 pi k j
+    found = located("""symflex = 1
+parameters = { a = "1 s" }
+signals.u = "R/(s + 2)/(1 - exp(-sqrt(s*a))/3)"
+signals.y = "exp(-sqrt(s*a))*(1 - exp(-sqrt(s*a))/3)*(s + 2)*u/(s + 1)"
+inputs.R = {}
+outputs.Y = "y"
+""")
+    assert [complex(root) for root in found.poles] == [-1]
+    assert [complex(mode.root) for mode in found.hidden] == [-2]
