@@ -57,6 +57,7 @@ from symflex.print.forms.frequency import FrequencyPage
 from symflex.print.forms.invariants import IMAGINARY
 from symflex.print.forms.naming import Naming
 from symflex.print.forms.notation import Line, constant_symbols, plain_printer, reachable, wave_times_length
+from symflex.roots.passivity import observed
 from symflex.transfer import BoundTransferFunction, TransferFunction
 from symflex.transfer.of_model import derive_all
 
@@ -69,7 +70,8 @@ def boundary(model: Model, over: Sequence[str]) -> Conditions:
     parameters = [pick_gain(model.parameters, name) for name in dict.fromkeys(over)]
     if len(parameters) != 2 or len(over) != 2:  # noqa: PLR2004
         raise UsageError(Diagnostic("SF902", "a boundary in letters has two parameters: --over K --over T"))
-    (tf,) = derive_all(model, [seen_pair(model)])
+    pair = seen_pair(model)
+    tf = derive_all(observed(model, pair[0]), [pair])[0].whole
     ring = tf.ratio.ring
     whole = prod((Factored.polynomial(ring, h.polynomial) for h in tf.hidden), start=tf.den)
     shaped = [n for n in over for v in tf.kernels.values if v.depends_on(n)]

@@ -13,7 +13,7 @@ determinants ``D_(n-1)``, ``D_(n-3)``, ... (Liénard and Chipart 1914; Gantmache
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import prod
 from random import Random
@@ -36,10 +36,11 @@ from symflex.print.forms.notation import constant_symbols
 from symflex.print.latex import latex_expression
 from symflex.print.latex.equation import model_labels
 from symflex.print.text import broken
-from symflex.roots.passivity import energy_proof
+from symflex.roots.passivity import energy_proof, observed
 from symflex.transfer import TransferFunction
 from symflex.transfer.enclose import principal_values
-from symflex.transfer.of_model import derive_all, pick_pairs
+from symflex.transfer.expansion import Expansion
+from symflex.transfer.of_model import assemble, derive_all, pick_pairs
 
 LONGEST: Final = 40  # terms of a condition that a person still reads: half a page
 MOST_TERMS: Final = 20_000  # terms of a determinant, which take about a second
@@ -119,14 +120,23 @@ def conditions(model: Model, of: str = POLES, tf: str | None = None) -> Conditio
         hint = "a boundary of two parameters in letters: --letters --over K --over T"
         raise ModelError(Diagnostic("SF801", message, None, hint))
     pairs = pick_pairs(model, [tf] if tf else [])
-    (own,) = derive_all(model, [seen_pair(model) if of == POLES else pairs[0]])
+    if of != POLES:
+        (own,) = derive_all(model, pairs[:1])
+        return conditions_of(own, f"zeros of {own.name}", own.num.factors)
+    pair = seen_pair(model)
+    (own,) = derive_all(observed(model, pair[0]), [pair])
     hidden = ((h.polynomial, h.multiplicity) for h in own.hidden)
-    factors = [*own.den.factors, *hidden] if of == POLES else own.num.factors
-    return conditions_of(own, of if of == POLES else f"zeros of {own.name}", factors)
+    loose = _of_outputs(model) if is_passive(model) else None
+    return conditions_of(own, of, [*own.den.factors, *hidden], loose)
 
 
-def conditions_of(tf: TransferFunction, of: str, polynomials: Iterable[Factor]) -> Conditions:
-    """Return when all roots of some polynomials of a transfer function's ring lie in the left half-plane."""
+def conditions_of(
+    tf: TransferFunction, of: str, polynomials: Iterable[Factor], loose: Container[str] | None = None
+) -> Conditions:
+    """Return when all roots of some polynomials of a transfer function's ring lie in the left half-plane.
+
+    Energy keeps roots out of the right half-plane but for ``loose`` factors; ``None``: it says nothing.
+    """
     signs = Signs.of(tf)
     arranger = Arranger.plain(signs.ring, constant_symbols(tf))
     every: dict[str, Factor] = {}
@@ -135,8 +145,9 @@ def conditions_of(tf: TransferFunction, of: str, polynomials: Iterable[Factor]) 
             if degree_in(factor, 0):
                 every[str(factor)] = factor, n * times + every.get(str(factor), (factor, 0))[1]
     needed: list[fmpz_mpoly] = []
-    on_axis, moving, is_kept_left = [], [], of == POLES and is_passive(tf.model)
-    for factor, times in every.values():
+    on_axis, moving = [], []
+    for key, (factor, times) in every.items():
+        is_kept_left = loose is not None and key not in loose
         is_even = not any(m[0] % 2 for m in factor.monoms())
         if is_even or len(factor) == 1:
             on_axis.append((format_expression(arranger.collected(factor)), times))
@@ -178,6 +189,14 @@ def is_passive(model: Model) -> bool:
         and all(e.passive is not None and all(p.domain not in CIRCUITS for p in e.ports) for e in elements)
         and energy_proof(model, free=[p.name for p in model.parameters]).is_passive
     )
+
+
+def _of_outputs(model: Model) -> set[str]:
+    """Return the factors that outputs of a lumped model are divided by, of which its energy says nothing."""
+    equations = assemble(model)
+    expansion = Expansion.of(equations)
+    divisors = [expansion.expanded(row.divisor) for row in equations.outputs]
+    return {str(f) for value in divisors for g, _ in value.factors for f, _ in irreducible_factors(g)[1]}
 
 
 def _hurwitz(signs: Signs, polynomial: fmpz_mpoly, *, is_even: bool) -> list[fmpz_mpoly]:

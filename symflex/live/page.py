@@ -172,7 +172,8 @@ def _function(member: Member, located: PoleZeroMap | str) -> dict[str, Any]:
     if tf.is_reduced:
         sign, rows = Signs.of(tf).of_polynomial, [tf.ring.coefficients(h.polynomial) for h in tf.hidden]
         # Up to the second degree, coefficients of one sign keep hidden poles out of the right half-plane.
-        data["hides"] = any(r[3:] or {sign(c) for c in r if not c.is_zero()} not in ({1}, {-1}) for r in rows)
+        may_grow = (r[3:] or {sign(c) for c in r if not c.is_zero()} not in ({1}, {-1}) for r in rows)
+        data["hides"] = tf.with_waves is not None or any(may_grow)
     if isinstance(located, str):
         return {**data, "why": located, "poles": [], "zeros": [], "infinite": not tf.is_rational}
     data |= {"why": "", "infinite": located.is_infinite, "certified": located.certificate.certified}

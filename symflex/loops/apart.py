@@ -13,9 +13,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from symflex.algebra import LAPLACE, NO_KERNELS, Factored
+from symflex.errors import SymflexError
 from symflex.loops.loop import GainPolynomial
-from symflex.roots.locate import locate
-from symflex.roots.pole_zero_map import StabilityVerdict, count_right
+from symflex.roots.locate import energy_of, locate, not_searched
+from symflex.roots.pole_zero_map import StabilityVerdict, count_right, judge
 from symflex.roots.region import Modes
 from symflex.transfer import BoundTransferFunction
 from symflex.transfer.transfer_function import HiddenFactor
@@ -57,7 +58,15 @@ def poles_apart(bound: BoundTransferFunction, factors: Sequence[GainPolynomial])
         parts=None if is_plain else (one, den),
         is_of_model=False,
     )
-    located = locate(apart, None if is_plain else Modes(1))
-    every = (*located.all_poles, *(h.root for h in located.hidden))
-    on_axis = [r for r in located.poles if r.on_imaginary_axis]
-    return PolesApart(located.verdict, count_right(every), sum(r.multiplicity for r in on_axis))
+    try:
+        located = locate(apart, None if is_plain else Modes(1))
+    except SymflexError as error:
+        return PolesApart(not_searched(error))
+    verdict, on_axis = located.verdict, [r for r in located.poles if r.on_imaginary_axis]
+    unseen = [h.root for h in located.hidden]
+    every = (*located.all_poles, *unseen)
+    # Hidden poles on the axis, which are all that energy leaves, do not change the word.
+    is_finite = ring.used_in(f for f, _ in den.factors).isdisjoint(bound.kernels.generators)
+    if verdict.word == "unknown" and is_finite and (energy := energy_of(bound)).is_passive:
+        verdict = judge(located.poles, "", energy.reason, unseen, (True, False))
+    return PolesApart(verdict, count_right(every), sum(r.multiplicity for r in on_axis))

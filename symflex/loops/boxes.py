@@ -30,6 +30,7 @@ from symflex.model import ExactValue, Model
 from symflex.roots.distributed.far_out import right_tail
 from symflex.roots.functions.exponential_values import ExponentialValues, Place, Summed, sums_of
 from symflex.roots.functions.kernel_function import KernelFactors
+from symflex.roots.passivity import energy_proof
 from symflex.transfer import BoundTransferFunction, TransferFunction
 from symflex.transfer.enclose import constant_tangent, enclosure, first_order
 from symflex.transfer.enclose_kernels import KernelValues
@@ -74,20 +75,47 @@ class CharacteristicFunction:
     values: tuple[tuple[str, ExactValue], ...]  # of the others
     nameless: TransferFunction | None = None  # without names for kernels, entire at s = 0; None if no waves
     chosen: tuple[fmpz_mpoly, ...] | None = None  # factors in place of those of all poles
+    are_positive: bool = False  # no parameter has a negative value in a box
 
     @classmethod
-    def of(cls, model: Model, tf: TransferFunction, names: Sequence[str]) -> CharacteristicFunction:
+    def of(
+        cls, model: Model, tf: TransferFunction, names: Sequence[str], *, are_positive: bool = False
+    ) -> CharacteristicFunction:
         """Return that of a model whose other parameters are numbers, from one of its transfer functions."""
         values = tuple((p.name, p.value) for p in model.parameters if p.value and p.name not in names)
         nameless = None
         if any(law.wavenumbers for law in tf.kernels.dispersions):
-            (nameless,) = derive_nameless(model, [(tf.output.name, tf.input.name)])
-        return cls(tf, tuple(names), values, nameless)
+            nameless = derive_nameless(model, [(tf.output.name, tf.input.name)])[0].whole
+        return cls(tf, tuple(names), values, nameless, are_positive=are_positive)
 
     @cached_property
     def factors(self) -> tuple[fmpz_mpoly, ...]:
-        """Those that may vanish elsewhere than at s = 0."""
-        return _factors(self.tf) if self.chosen is None else self.chosen
+        """Those that may vanish elsewhere than at s = 0, and whose roots depend on the parameters."""
+        return self._moved(self.tf) if self.chosen is None else self.chosen
+
+    def _moved(self, tf: TransferFunction) -> tuple[fmpz_mpoly, ...]:
+        hidden = [h.polynomial for h in tf.hidden]
+        moving = {name: _moving(tf, name) for name in self.names}
+        moved = []
+        for f in _factors(tf):
+            own = tuple(name for name, places in moving.items() if any(f.degrees()[i] for i in places))
+            # Hidden poles that energy keeps out of the right half-plane do not change the verdict.
+            if own and not (f in hidden and self._rests_with(own)):
+                moved.append(f)
+        return tuple(moved)
+
+    def _rests_with(self, names: tuple[str, ...]) -> bool:
+        """Tell whether energy keeps poles that depend on some parameters out of the right half-plane."""
+        if not self.are_positive:
+            return False
+        if names not in self._known:
+            model = self.tf.model
+            self._known[names] = energy_proof(model, (), self.tf.output, names).is_passive
+        return self._known[names]
+
+    @cached_property
+    def _known(self) -> dict[tuple[str, ...], bool]:
+        return {}
 
     def of_roots(self, kind: str) -> CharacteristicFunction:
         """Return the factors of the poles, or of the zeros, that the transfer function has."""
@@ -96,7 +124,7 @@ class CharacteristicFunction:
 
     @cached_property
     def _entire(self) -> tuple[fmpz_mpoly, ...]:
-        return () if self.nameless is None else _factors(self.nameless)
+        return () if self.nameless is None else self._moved(self.nameless)
 
     @cached_property
     def leading(self) -> frozenset[str]:
@@ -114,12 +142,7 @@ class CharacteristicFunction:
 
     def depends_on(self, name: str) -> bool:
         """Tell whether a root depends on a parameter."""
-        tf = self.tf
-        moving = {name, *(c.generator for c in tf.constants if names_among(c.expression, {name}))}
-        ring = tf.ratio.ring
-        if any(value.depends_on(n) for value in tf.kernels.values for n in moving if n in ring.index):
-            return True
-        return any(f.degrees()[ring.index[n]] for f in self.factors for n in moving if n in ring.index)
+        return any(f.degrees()[i] for f in _factors(self.tf) for i in _moving(self.tf, name))
 
     def whole(self, box: Box) -> OpenBox:
         """Return a box about which nothing is known yet."""
@@ -368,6 +391,16 @@ def _fraction(x: arb) -> Fraction:
 
 def _slope(value: Value) -> acb:
     return value[1] if isinstance(value, acb_series) else acb(0)
+
+
+def _moving(tf: TransferFunction, name: str) -> set[int]:
+    """Return the places in the ring of what depends on a parameter, wavenumbers and kernels among it."""
+    ring, table = tf.ratio.ring, tf.kernels
+    own = {name, *(c.generator for c in tf.constants if names_among(c.expression, {name}))} & set(ring.index)
+    laws = [d for d in table.dispersions if any(v.depends_on(n) for v in d.coefficients for n in own)]
+    waves = {w for d in laws for w in d.wavenumbers}
+    kernels = (k for k in table.kernels if k.dispersion in laws or any(map(k.length.depends_on, own)))
+    return {ring.index[n] for n in (*own, *waves, *(k.generator for k in kernels))}
 
 
 def _factors(tf: TransferFunction, given: Sequence[fmpz_mpoly] | None = None) -> tuple[fmpz_mpoly, ...]:

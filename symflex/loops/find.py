@@ -74,6 +74,8 @@ def find_stable_gains(
         return _at_nominal(loop, limits or (None, None), digits, BRANCH)
     end = None if loop.model.data_end is None else 2 * pi * float(loop.model.data_end)
     lumped, along, (low, high), apart, at_end = _parts(loop, limits, up_to, end)
+    if apart.verdict.right is None:
+        return _at_nominal(loop, (low, high), digits, apart.verdict.reason)
     end = None if isinstance(along, NetworkFactors) else end
     if along is not None and not along.radius[1] and WITHOUT_END in along.reasons[-1]:
         return _at_nominal(loop, (low, high), digits, along.reasons[-1])
@@ -264,7 +266,7 @@ def _bounded(loop: AnyLoop, limits: Limits) -> tuple[Fraction, Fraction]:
 
 
 def _split(loop: Loop) -> tuple[tuple[GainPolynomial, ...], tuple[GainPolynomial, ...]]:
-    """Return the factors that are polynomials in s alone, and those with kernels."""
+    """Return the factors that are polynomials in s alone, or hidden for all gains, and those with kernels."""
     bound = loop.bound
     plain: list[GainPolynomial] = []
     mixed: list[GainPolynomial] = []
@@ -272,6 +274,7 @@ def _split(loop: Loop) -> tuple[tuple[GainPolynomial, ...], tuple[GainPolynomial
         polynomials = [f for value in factor.coefficients for f, _ in value.factors]
         has_kernels = not bound.ratio.ring.used_in(polynomials).isdisjoint(bound.kernels.generators)
         has_root = factor.degree > 0 and bound.sheets > 1
+        has_kernels = has_kernels and not (factor.is_hidden and not factor.degree)
         (mixed if has_root or has_kernels or factor.multiplicity < 0 else plain).append(factor)
     return tuple(plain), tuple(mixed) if bound.kernels or bound.sheets > 1 else ()
 

@@ -24,6 +24,7 @@ from symflex.loops.loop_function import LoopFunction
 from symflex.loops.networks import AnyLoop, LoopInDisc, NetworkLoop
 from symflex.model import ExactValue
 from symflex.roots import Band, Modes, PoleZeroMap, Position, Region, Root
+from symflex.roots.functions.simplified import with_parts
 from symflex.roots.locate import locate
 from symflex.roots.pole_zero_map import Exclusion, is_right
 from symflex.transfer import BoundTransferFunction
@@ -124,10 +125,9 @@ def _with(loop: Loop, num: Factored, den: Factored, gain: Fraction) -> BoundTran
         message = f"the equations have no unique solution for {loop.gain.name} = {float(gain):.6g}"
         hint = f"give '{loop.gain.name}' another value, or leave this one out of --range"
         raise ModelError(Diagnostic("SF231", message, loop.gain.span, hint))
-    parts = (num, den) if bound.kernels else None
     own = (loop.gain.name, ExactValue(gain))
     values = tuple(own if name == loop.gain.name else (name, value) for name, value in bound.values)
-    return replace(bound, values=values, ratio=num / den, hidden=(), parts=parts)
+    return with_parts(replace(bound, values=values), num, den)
 
 
 def closed_loop_roots(loop: AnyLoop, gain: Fraction, region: Region | None = None) -> PoleZeroMap:
@@ -172,7 +172,7 @@ def trace_locus(
     no straight line in the gain.
     """
     low, high = _range(loop, limits)
-    is_endless = isinstance(loop, NetworkLoop) or bool(loop.bound.kernels)
+    is_endless = isinstance(loop, NetworkLoop) or loop.has_waves
     if modes is None and band_hz is not None and is_endless:
         band = Band(Fraction(0), Fraction(band_hz[1]))
         shown = [closed_loop_roots(loop, gain, band).poles for gain in (low, high)]

@@ -89,6 +89,12 @@ class Loop:
         """The factors that depend on the gain."""
         return tuple(factor for factor in self.factors if factor.degree)
 
+    @property
+    def has_waves(self) -> bool:
+        """Whether a factor that depends on the gain has kernels."""
+        used = (f for factor in self.with_gain for value in factor.coefficients for f, _ in value.factors)
+        return not self.bound.ratio.ring.used_in(used).isdisjoint(self.bound.kernels.generators)
+
 
 def characteristic_loop(
     tf: TransferFunction, gain: ModelParameter, values: Mapping[str, Given] | None = None

@@ -29,6 +29,7 @@ from symflex.options import (
     highest_frequency,
     tolerance,
 )
+from symflex.roots.passivity import observed
 from symflex.transfer import Given, TransferFunction
 from symflex.transfer.bind import read_values
 from symflex.transfer.of_model import (
@@ -87,7 +88,7 @@ def _seeing(model: Model, pairs: Sequence[tuple[str, str]], gain: ModelParameter
     """Return the first function whose poles depend on the gain, else the first: what it hides is hidden."""
     derived: list[TransferFunction] = []
     for pair in pairs:
-        derived += derive_all(model, [pair])
+        derived += (tf.whole for tf in derive_all(observed(model, pair[0]), [pair]))
         moving = loop_layer.gain_generators(derived[-1], gain.name)
         if any(derived[-1].den.depends_on(name) for name in moving):
             return derived[-1]
@@ -102,7 +103,7 @@ def _of_network(model: Model, parameter: ModelParameter, given: Mapping[str, Giv
     known = dict(read_values(valued, dict(given)))
     value = known.pop(gain, None)
     nominal = None if value is None or value.pi_power else value.rational
-    sparse = assemble_sparse(with_numbers(model, (gain,), known, in_kernels=True))
+    sparse = assemble_sparse(with_numbers(observed(model), (gain,), known, in_kernels=True))
     return network_loop(sparse, parameter, nominal)
 
 
@@ -125,7 +126,7 @@ def stability(
     try:
         loop = characteristic_loop(model, given.gain, values, what)
         written = find_stable_gains(loop, limits, digits, radians)
-        if isinstance(loop, Loop) and (given.peaks or not loop.bound.kernels) and model.data_end is None:
+        if isinstance(loop, Loop) and (given.peaks or not loop.has_waves) and model.data_end is None:
             if written.is_stable and loop.nominal and is_straight(loop):
                 written = replace(written, peaks=loop_peaks(loop, loop.nominal))
     except BudgetError:

@@ -22,7 +22,7 @@ from flint import acb, arb
 from symflex.balls import ball, bits_for_digits, precision
 from symflex.errors import BudgetError, Diagnostic, ModelError, UsageError
 from symflex.expressions import names_among
-from symflex.loops.boxes import BITS, CharacteristicFunction, Ends, OpenBox
+from symflex.loops.boxes import BITS, Box, CharacteristicFunction, Ends, OpenBox
 from symflex.loops.chart import StabilityChart, count_at, find_chart
 from symflex.loops.find import gain_margins
 from symflex.loops.loop import pick_gain
@@ -32,6 +32,7 @@ from symflex.model.along import is_tapered
 from symflex.model.loss_factors import check_causal
 from symflex.options import StabilityOptions, gain_ends, share_of
 from symflex.roots.distributed.far_out import VANISHES
+from symflex.roots.passivity import observed
 from symflex.transfer import Given
 from symflex.transfer.bind import read_values
 from symflex.transfer.of_model import assemble, derive_all
@@ -67,7 +68,7 @@ def stability_over(
         )
     limits = tuple(_limits(model, p, given) for p in parameters)
     nominal = [None if p.value is None or p.value.pi_power else p.value.rational for p in parameters]
-    function = characteristic(model, names)
+    function = characteristic(model, names, limits)
     for parameter in parameters:
         if not function.depends_on(parameter.name):
             message = f"no pole of the model depends on '{parameter.name}'"
@@ -94,7 +95,7 @@ def with_values(model: Model, values: Mapping[str, Given] | None) -> Model:
 
 
 def characteristic(
-    model: Model, names: Sequence[str], pair: tuple[str, str] | None = None
+    model: Model, names: Sequence[str], ranges: Box, pair: tuple[str, str] | None = None
 ) -> CharacteristicFunction:
     """Return a model's characteristic function in some parameters; SF801 where it cannot be followed."""
     check_causal(model, "stability over a parameter")
@@ -104,8 +105,12 @@ def characteristic(
         span = pick_gain(model.parameters, names[0]).span
         raise ModelError(Diagnostic("SF801", message, span, _sweep(names[0])))
     prepared = with_numbers(model, names, in_kernels=True)
-    (tf,) = derive_all(prepared, [pair or seen_pair(prepared)])
-    return CharacteristicFunction.of(prepared, tf, names)
+    seen = pair or seen_pair(prepared)
+    if pair is None:
+        prepared = observed(prepared, seen[0])
+    (tf,) = derive_all(prepared, [seen])
+    are_positive = all(low >= 0 for low, _ in ranges)
+    return CharacteristicFunction.of(prepared, tf.whole, names, are_positive=are_positive)
 
 
 def _sweep(name: str) -> str:
@@ -211,6 +216,8 @@ def find_intervals(
         tf=function.tf.name,
         counted_in=parameter.counted_in,
     )
+    if nominal is not None and (stability.verdict.word == "unknown" or function.tf.hidden):
+        stability = replace(stability, at_nominal=count_at(function, (nominal,))[0])
     return replace(stability, gain_margins=gain_margins(stability))
 
 

@@ -61,7 +61,8 @@ class SpreadStability(Printed):
     def passages(self) -> list[Passage]:
         """Return the verdict, and the box beside the combination or the part that it is about."""
         word = f"{self.word}: {self.reason}" if self.reason else self.word
-        word += {"stable": " for every combination", "unstable": f" by {self.unstable}"}.get(self.word, "")
+        count = f" by {self.unstable}" if self.unstable else ""
+        word += {"stable": " for every combination", "unstable": count}.get(self.word, "")
         other: Sequence[Point] = self.open_box or tuple((x,) for x in self.combination or [])
         other = other or [()] * len(self.box)
         rows: list[tuple[str, ...]] = [("", "from", "to", self.word, "to")[: 3 + len(other[0])]]
@@ -118,7 +119,7 @@ def spread_function(
 ) -> tuple[CharacteristicFunction, Box, list[ModelParameter]]:
     """Return a characteristic function in what is spread and moves poles, with the box, and these."""
     ends = spread_box(model.parameters, None if share == "" else share_of(share, "--spread"))
-    function = characteristic(model, tuple(ends), pair)
+    function = characteristic(model, tuple(ends), tuple(ends.values()), pair)
     moving = [p for p in model.parameters if p.name in ends and (pair or function.depends_on(p.name))]
     if not moving:
         raise ModelError(Diagnostic("SF801", "no pole of the model depends on a parameter with a spread"))

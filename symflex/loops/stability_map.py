@@ -212,7 +212,8 @@ class StabilityMap(Printed):
                 word = self.at_nominal or StabilityVerdict("unknown", least, False, reason)
             else:
                 word = StabilityVerdict("marginal" if axis else "stable", 0, True, where or beyond)
-        return replace(word, hidden=self.apart.verdict.hidden, moving=self.apart.verdict.moving)
+        known = self.apart.verdict if self.is_gain or self.at_nominal is None else self.at_nominal
+        return replace(word, hidden=known.hidden, moving=known.moving)
 
     @property
     def is_stable(self) -> bool | None:

@@ -37,6 +37,7 @@ from symflex.roots.plane.search import HIGHEST
 from symflex.roots.pole_zero_map import (
     COINCIDE,
     NONE_ON_AXIS,
+    Certificate,
     Exclusion,
     HiddenRoot,
     PoleZeroMap,
@@ -53,9 +54,10 @@ from symflex.roots.pole_zero_map import (
 from symflex.roots.polynomial_roots import in_order
 from symflex.roots.problem import cancelled, problem_of
 from symflex.roots.region import Band, Everything, Mode, Modes, Rectangle, Region
-from symflex.roots.root import ROUNDING, TOUCHING, Root, overlap, root_at_zero
+from symflex.roots.root import ROUNDING, TOUCHING, Root, count_roots, overlap, root_at_zero
 from symflex.roots.sheets import locate_on_sheet
 from symflex.transfer import AnyBoundFunction, BoundNested, BoundTransferFunction
+from symflex.transfer.bind import with_waves
 from symflex.transfer.of_model import assemble, assemble_sparse, derive_bound, derive_if_small
 
 
@@ -80,6 +82,32 @@ def locate(
             if known.certificate.certified:
                 bound.located[region, digits] = known
         return known
+    located = _locate_seen(bound, region, digits, with_zeros=with_zeros, judged=judged)
+    try:
+        whole = with_waves(bound)
+        if whole is None:
+            return located
+        every = _locate_seen(whole, region, digits, with_zeros=with_zeros, judged=judged)
+    except SymflexError as error:
+        return replace(located, verdict=located.verdict.beside(not_searched(error)), hides_more=True)
+    return _with_hidden(located, every)
+
+
+def not_searched(error: SymflexError) -> StabilityVerdict:
+    """Return the verdict on hidden modes that a search does not find."""
+    reason = f"uncontrollable or unobservable parts are not searched: {error.diagnostics[0].message}"
+    return StabilityVerdict("unknown", None, certified=False, reason=reason)
+
+
+def _locate_seen(
+    bound: BoundTransferFunction,
+    region: Region | None,
+    digits: int,
+    *,
+    with_zeros: bool,
+    judged: PoleZeroMap | None,
+) -> PoleZeroMap:
+    """Find poles and zeros, and hidden modes as far as the function's ring holds them."""
     bound = without_lengths_of_zero(bound)
     if bound.sheets > 1:
         if IMAGINARY in bound.ratio.ring.index:
@@ -108,15 +136,19 @@ def locate(
         digits,
         [(problem_of(bound, factors), "cancelled") for factors in together],
     )
-    verdict = replace(located.verdict, moving=_moving_unseen(bound))
-    if bound.source.hides_waves and verdict.word != "unstable":
-        energy = _energy(bound)
-        verdict = (
-            replace(verdict, reason=f"{energy.reason}; {UNSEEN_ON_AXIS}")
-            if energy.is_passive
-            else StabilityVerdict("unknown", None, certified=False, reason=UNSEEN_WAVES)
-        )
-    return replace(located, verdict=verdict)
+    return replace(located, verdict=replace(located.verdict, moving=_moving_unseen(bound)))
+
+
+def _with_hidden(seen: PoleZeroMap, every: PoleZeroMap) -> PoleZeroMap:
+    """Return a map of poles and zeros with the hidden modes, and the verdict, of a map that has them too."""
+    roots = (*seen.poles, *seen.zeros, *seen.unstable, *(h.root for h in every.hidden))
+    found, (one, other) = count_roots(roots), (seen.certificate, every.certificate)
+    missing = max(one.counted - one.found, 0) + max(other.counted - other.found, 0)
+    engine = ", ".join(sorted({*one.engine.split(", "), *other.engine.split(", ")}))
+    certificate = Certificate(
+        engine, found + missing, found, one.reason or other.reason, one.code or other.code
+    )
+    return replace(seen, hidden=every.hidden, certificate=certificate, verdict=every.verdict, hides_more=True)
 
 
 def _moving_unseen(bound: BoundTransferFunction) -> tuple[str, ...]:
@@ -186,8 +218,6 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int) -> Po
     return other if is_better else located
 
 
-UNSEEN_WAVES = "an uncontrollable or unobservable distributed part may have poles anywhere"
-UNSEEN_ON_AXIS = "an uncontrollable or unobservable distributed part may have poles on the imaginary axis"
 DEFAULT_MODES = 5  # number of modes if neither the model nor the user gives it
 
 
@@ -296,8 +326,9 @@ class _Searched:
         if any(overlap(root, point) for side in self.sides for root in side.roots for point in degenerate):
             self.sides[1] = self._side(bound.num)
             shared = _find(self.sides, where)
-        # Modes are of the poles; what cancelled has none of its own.
-        self._within = hidden_region(where, self.chosen()[0])
+        # Modes are of the poles; what cancelled has modes of its own where poles are finite in number.
+        if not all(side.is_finite for side in self.sides[:1]):
+            self._within = hidden_region(where, self.chosen()[0])
         hidden = self._side(cancelled(bound), is_hidden=True)
         self.sides.append(hidden)
         _find((hidden,), self._within)
@@ -393,7 +424,7 @@ class _Searched:
         product = cancelled(bound)
         poles = [] if bound.ratio.is_zero else [(0, bound.den)]
         coincident = self._points.coincident_elsewhere(self.hidden)
-        energy = _energy(bound)
+        energy = energy_of(bound) if bound.is_of_model else EnergyProof()
         proof, rests = (energy.reason, energy.rests) if energy.is_passive else ("", False)
         if before is not None and before.certificate.certified and not proof:
             return before.verdict, before.all_poles, tuple(h.root for h in before.hidden)
@@ -412,7 +443,8 @@ class _Searched:
                 known = [*side.roots, *(h.root for h in coincident if h.is_proved is is_hidden)]
                 is_plain = rests or is_over or side.is_finite
                 end = limit if not proof else None if is_plain else last_on_axis(side)
-                has_more = has_more or not (side.is_finite or (proof and end is not None))
+                # Hidden poles on the axis, which are all that energy leaves, do not change the word.
+                has_more = has_more or not (side.is_finite or (proof and (is_hidden or end is not None)))
                 is_endless = not side.is_finite and end is None  # of what cancelled, which is last
                 if is_over or (proof and end is None):
                     more = side.all_roots if side.is_finite else side.at_origin if rests else ()
@@ -425,7 +457,7 @@ class _Searched:
                 reached = 0.0 if unproved else self._reached(side)
                 whole = search_right(side, known, reached, end)
             except SymflexError as error:
-                has_more, known = True, known if proof else []
+                has_more, known = has_more or not (proof and is_hidden), known if proof else []
                 sides.append(tuple(known))
                 gaps.append(RightHalfPlane((), error.diagnostics[0].message))
                 continue
@@ -447,10 +479,10 @@ class _Searched:
             unsure = "" if rests or not has_more else NONE_ON_AXIS
         seen = [*chain(*sides[:-1]), *(h.root for h in degenerate if not h.is_proved)]
         # Where wavenumbers vanish, a factor may have a root that is no pole: s itself tells how many are.
-        at_rest = product.exponent_of(bound.ratio.ring.context.gen(0))
-        unseen = [r for r in sides[-1] if not r.is_zero] + root_at_zero(at_rest)
-        verdict = judge(seen, unsure, proof, unseen, is_endless=is_endless)
-        return verdict, sides[0] if poles else (), sides[-1]
+        at_rest = root_at_zero(product.exponent_of(bound.ratio.ring.context.gen(0)))
+        unseen = [*(r for r in sides[-1] if not r.is_zero), *at_rest]
+        ends = (is_endless, bool(gaps[-1].unproved) and not proof)
+        return judge(seen, unsure, proof, unseen, ends), sides[0] if poles else (), sides[-1]
 
     def _reached(self, side: Side) -> float:
         """Return up to which abs(s) all roots of a side are known [rad/s]."""
@@ -528,10 +560,9 @@ def _chosen(roots: Sequence[Root], region: Region) -> list[Root]:
     return list(in_order(roots) if isinstance(region, Mode) else chosen(roots, region))
 
 
-def _energy(bound: BoundTransferFunction) -> EnergyProof:
-    """Return what energy says of a function's poles; nothing where they are not its model's."""
-    source = bound.source
-    return energy_proof(source.model, bound.all_values, source.output) if bound.is_of_model else EnergyProof()
+def energy_of(bound: BoundTransferFunction) -> EnergyProof:
+    """Return what energy says of the poles of a function's model, hidden ones among them."""
+    return energy_proof(bound.source.model, bound.all_values, bound.source.output)
 
 
 def _exclusion(hole: Cell) -> Exclusion:

@@ -38,6 +38,7 @@ from symflex.algebra import LAPLACE, Factored, terms_of
 from symflex.balls import ball, precision
 from symflex.equations import Equations
 from symflex.expressions import (
+    Call,
     Expression,
     Name,
     Negative,
@@ -115,7 +116,8 @@ def energy_proof(
     known = {p.name: p.value for p in model.parameters if p.value is not None} | dict(values)
     known = {name: value for name, value in known.items() if name not in free}
     declared = (replace(p, value=None, assume="positive") if p.name in free else p for p in model.parameters)
-    model = replace(_observed(model, output), parameters=tuple(declared))
+    seen = () if output is None else (output,)
+    model = replace(_with_signals_of(model, seen), parameters=tuple(declared))
     if model.fields:
         is_passive, rests = fields_supply_nothing(model, known)
         return EnergyProof(PASSIVE, rests) if is_passive else EnergyProof()
@@ -202,21 +204,28 @@ def _dynamic(model: Model) -> dict[str, Expression]:
     return definitions
 
 
-def _observed(model: Model, output: Output | None) -> Model:
-    """Return a model with an output as a signal, whose own poles passivity says nothing of."""
-    if output is None:
-        return model
+def observed(model: Model, seen: str = "") -> Model:
+    """Return a model whose determinant has all poles: those, too, that outputs but one have of their own."""
+    return _with_signals_of(model, [o for o in model.outputs if o.name != seen])
+
+
+def _with_signals_of(model: Model, outputs: Sequence[Output]) -> Model:
+    """Return a model with outputs as signals where they have poles of their own but at 0."""
     behind = {LAPLACE, *(b.name for b in model.blocks), *_dynamic(model)}
 
     def may_vanish(e: Expression) -> bool:
         below = e.denominator if isinstance(e, Quotient) else e.base if isinstance(e, Power) else None
         is_whole = isinstance(e, Power) and isinstance(e.exponent, Number) and e.exponent.value >= 0
-        return below is not None and not is_whole and bool(names_among(below, behind))
+        if below is None or is_whole:
+            return False
+        is_power = not any(isinstance(n, Sum | Call) for n in nodes(below))  # whose root is 0
+        return any(name != LAPLACE or not is_power for name in names_among(below, behind))
 
-    used = names_among(output.expression, behind - {LAPLACE})
-    if not used and not any(map(may_vanish, nodes(output.expression))):
-        return model
-    return replace(model, signals=(*model.signals, Signal(OBSERVED, output.expression)))
+    def has_poles(e: Expression) -> bool:
+        return bool(names_among(e, behind - {LAPLACE})) or any(map(may_vanish, nodes(e)))
+
+    own = [Signal(f"{OBSERVED} {o.name}", o.expression) for o in outputs if has_poles(o.expression)]
+    return replace(model, signals=(*model.signals, *own)) if own else model
 
 
 def _fastest_growth(pressed: Sequence[PlacedElement], line: Line) -> float | None:

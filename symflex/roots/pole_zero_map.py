@@ -150,20 +150,21 @@ def judge(
     unproved: str = "",
     proof: str = "",
     hidden: Sequence[Root] = (),
-    *,
-    is_endless: bool = False,
+    more: tuple[bool, bool] = (False, False),
 ) -> StabilityVerdict:
     """Return the verdict that known poles allow.
 
     ``roots`` are the controllable and observable poles, ``hidden`` the others: all that are not in the open
     left half-plane, unless ``unproved`` says why there may be more in the right half-plane or on the axis.
     ``proof`` says what proves that there are none in the open right half-plane, but maybe on the axis.
-    With ``is_endless``, more hidden poles may lie on the axis.
+    ``more`` says whether further hidden poles may lie on the axis, and in the right half-plane.
     """
     on_axis = [root for root in hidden if root.on_imaginary_axis]
     at_rest = count_roots(root for root in on_axis if root.is_zero)
-    beside = count_roots(on_axis) - at_rest
-    named = hidden_poles(at_rest, inf if beside and is_endless else beside, count_right(hidden))
+    beside: float = count_roots(on_axis) - at_rest
+    is_endless, is_open = more
+    beside = inf if beside and is_endless else beside
+    named = hidden_poles(at_rest, beside, count_right(hidden), is_open=is_open)
     return replace(_judged(roots, hidden, unproved, proof), hidden=named)
 
 
@@ -196,10 +197,10 @@ def _judged(roots: Sequence[Root], hidden: Sequence[Root], unproved: str, proof:
     return StabilityVerdict("stable", 0, True)
 
 
-def hidden_poles(at_rest: int, on_axis: float, right: int) -> str:
+def hidden_poles(at_rest: int, on_axis: float, right: int, *, is_open: bool = False) -> str:
     """Return in words how many hidden poles lie at s = 0, elsewhere on the axis, and right of it.
 
-    Where more may lie on the axis, their number is infinite and is not said.
+    Where more may lie on the axis, their number is infinite and is not said; more to the right ``is_open``.
 
     >>> hidden_poles(1, 2, 0)
     'a hidden pole at s = 0 and 2 on the imaginary axis'
@@ -207,6 +208,8 @@ def hidden_poles(at_rest: int, on_axis: float, right: int) -> str:
     ('2 hidden poles in the right half-plane', '')
     >>> hidden_poles(0, inf, 0), hidden_poles(1, inf, 0)
     ('hidden poles on the imaginary axis', 'a hidden pole at s = 0 and others on the imaginary axis')
+    >>> hidden_poles(0, 0, 5, is_open=True)
+    'at least 5 hidden poles in the right half-plane'
     """
     places = ((at_rest, AT_REST), (on_axis, "on the imaginary axis"), (right, "in the right half-plane"))
     said: list[str] = []
@@ -214,6 +217,8 @@ def hidden_poles(at_rest: int, on_axis: float, right: int) -> str:
         if count:
             kind = "" if said else " hidden pole" if count == 1 else " hidden poles"
             number = "a" if count == 1 and not said else f"{count}".replace("inf", "others" if said else "")
+            if is_open and where == places[-1][1]:
+                number = f"at least {count}"
             said.append(f"{number}{kind} {where}".strip())
     return " and ".join(said)
 
@@ -315,6 +320,9 @@ class PoleZeroMap:
     unstable : tuple of Root
         Poles in the right half-plane outside the requested region. If only a number of modes was
         requested, they are among ``poles``, wherever they lie.
+    hides_more : bool
+        Hidden modes are infinite in number, and poles and zeros are not: some are listed, and those known in
+        the right half-plane.
     """
 
     tf: str
@@ -329,6 +337,7 @@ class PoleZeroMap:
     is_infinite: bool = False
     verdict: StabilityVerdict = NOT_EXAMINED
     unstable: tuple[Root, ...] = ()
+    hides_more: bool = False
 
     def __repr__(self) -> str:
         counts = f"{count_roots(self.all_poles)} poles, {count_roots(self.zeros)} zeros"

@@ -156,6 +156,17 @@ def bind(tf: TransferFunction, values: Mapping[str, Given] | None = None) -> Bou
     return _compared(BoundTransferFunction(tf, exact, ratio, tuple(hidden), kernels, parts))
 
 
+def with_waves(bound: BoundTransferFunction) -> BoundTransferFunction | None:
+    """Return a function over a ring with kernels, where only what it hides has any; else None."""
+    source = bound.source.with_waves
+    if source is None or not bound.is_of_model:
+        return None
+    known = {p.name for p in source.model.parameters}
+    whole = bind(source, {name: value for name, value in bound.values if name in known})
+    # Derived with numbers, it may be written without kernels again.
+    return whole if whole.kernels else with_waves(whole)
+
+
 def _vanishing(what: str) -> ModelError:
     hint = "write a rigid or massless limit as a model of its own"
     return ModelError(Diagnostic("SF231", f"{what} is zero for these values", None, hint))

@@ -255,15 +255,14 @@ class _CramerQuotients:
         hidden: tuple[HiddenFactor, ...] = (),
         table: KernelTable = NO_KERNELS,
         parts: tuple[Factored, Factored] | None = None,
-        *,
-        hides_waves: bool = False,
+        with_waves: TransferFunction | None = None,
     ) -> TransferFunction:
         equations, model = self._origin, self._origin.model
         known = dict(model.quotients).get((output.name, given.name))
         quantity, unit = name_quantity(output, given, known), unit_of_quotient(output, given, known)
         found = (output, given, ratio, closed, hidden, quantity, unit)
         context = (equations.ring, equations.definitions, equations.constants, model)
-        return TransferFunction(*found, *context, table, parts, self.solve, hides_waves)
+        return TransferFunction(*found, *context, table, parts, self.solve, with_waves)
 
     def _finish_distributed(
         self, output: Output, given: Input, num: fmpz_mpoly, denominator: Factored, hidden: Factored
@@ -286,21 +285,19 @@ class _CramerQuotients:
             above, below = opened(above, below, table)
         if below.unit < 0:
             above, below = -above, -below
-        ratio, hides_waves = above / below, False
+        ratio = above / below
+        table = table.restricted(
+            above.ring.used_in(f for v in (above, below, cancelled) for f, _ in v.factors)
+        )
         kernels = {k.generator for k in table.kernels}
-        if ratio.ring.used_in(f for f, _ in ratio.factors).isdisjoint(kernels):
-            hides_waves = not ratio.ring.used_in(f for f, _ in cancelled.factors).isdisjoint(kernels)
-            table = NO_KERNELS
-            ratio, above, below, cancelled = (
-                self._without_kernels(v) for v in (ratio, above, below, cancelled)
-            )
-        if table:
-            table = table.restricted(
-                above.ring.used_in(f for v in (above, below, cancelled) for f, _ in v.factors)
-            )
-        parts = (above, below) if table else None
-        hidden_factors = self._hidden(cancelled, table)
-        return self._made(output, given, None, ratio, hidden_factors, table, parts, hides_waves=hides_waves)
+        factors, parts = self._hidden(cancelled, table), (above, below) if table else None
+        whole = self._made(output, given, None, ratio, factors, table, parts)
+        if not ratio.ring.used_in(f for f, _ in ratio.factors).isdisjoint(kernels):
+            return whole
+        hides_waves = not ratio.ring.used_in(h.polynomial for h in whole.hidden).isdisjoint(kernels)
+        ratio, cancelled = (self._without_kernels(v) for v in (ratio, cancelled))
+        with_waves = whole if hides_waves else None
+        return self._made(output, given, None, ratio, self._hidden(cancelled), with_waves=with_waves)
 
     def _without_kernels(self, value: Factored) -> Factored:
         """Return the factors that contain no kernel or wavenumber, over the ring without them."""

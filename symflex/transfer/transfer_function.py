@@ -107,7 +107,8 @@ class TransferFunction:
     parts: tuple[Factored, Factored] | None = None  # of a distributed system, :attr:`num` and :attr:`den`
     # The equations it was compared with, for comparing it again when it has numbers.
     solve: ModelSolve | None = field(default=None, compare=False, repr=False)
-    hides_waves: bool = False  # factors with kernels cancelled and left none: all are hidden
+    # The same over a ring with kernels, where only what cancelled has any; then ``hidden`` lacks these.
+    with_waves: TransferFunction | None = None
 
     @cached_property
     def ratio(self) -> Factored:
@@ -208,10 +209,17 @@ class TransferFunction:
         """The factors of the ratio and of everything its wavenumbers and kernels are made of."""
         return (*self.ratio.factors, *(f for v in self.kernels.values for f in v.factors))
 
+    @property
+    def whole(self) -> TransferFunction:
+        """The function whose denominator and hidden factors are all that the equations' determinant has."""
+        return self.with_waves or self
+
     @cached_property
     def hidden_parameters(self) -> tuple[ModelParameter, ...]:
         """The parameters that occur in hidden factors, in declared order."""
-        return self.parameters_in([h.polynomial for h in self.hidden])
+        whole = self.whole
+        inside = [f for v in whole.kernels.values for f, _ in v.factors] if self.with_waves else []
+        return whole.parameters_in([*(h.polynomial for h in whole.hidden), *inside])
 
     def parameters_in(self, polynomials: Sequence[fmpz_mpoly]) -> tuple[ModelParameter, ...]:
         """Return the parameters that polynomials over the function's ring hold."""

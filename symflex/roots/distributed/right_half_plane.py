@@ -18,7 +18,7 @@ from symflex.errors import BudgetError
 from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.distributed.far_out import axis_tail, right_tail
 from symflex.roots.distributed.side import Side
-from symflex.roots.pole_zero_map import count_right, is_right
+from symflex.roots.pole_zero_map import WITHOUT_END, count_right, is_right
 from symflex.roots.region import Band, Rectangle, Region
 from symflex.roots.root import Root
 
@@ -123,6 +123,8 @@ def gaps_text(half_planes: Iterable[RightHalfPlane]) -> str:
         if each.unproved:
             reached[each.unproved] = min(reached.get(each.unproved, each.reached), each.reached)
     return "; ".join(
-        f"known up to {radius / (2 * pi):.4g} Hz only: {reason}" if radius > 0 else reason
+        f"known up to {radius / (2 * pi):.4g} Hz only: {reason}"
+        if radius > 0 and WITHOUT_END not in reason
+        else reason
         for reason, radius in reached.items()
     )

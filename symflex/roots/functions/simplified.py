@@ -8,6 +8,7 @@ are exact.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
@@ -62,6 +63,14 @@ def without_lengths_of_zero(bound: BoundTransferFunction) -> BoundTransferFuncti
         for known in bound.hidden
         for f, e in evaluated(known.polynomial).factors
     ]
+    return with_parts(bound, num, den, hidden)
+
+
+def with_parts(
+    bound: BoundTransferFunction, num: Factored, den: Factored, hidden: Sequence[HiddenFactor] = ()
+) -> BoundTransferFunction:
+    """Return a function with other parts over the same ring, or over one without kernels if that does."""
+    ring = bound.ratio.ring
     factors = [f for f, _ in (*num.factors, *den.factors)] + [h.polynomial for h in hidden]
     if not ring.used_in(factors).isdisjoint(bound.kernels.generators):
         return replace(bound, ratio=num / den, parts=(num, den), hidden=tuple(hidden))

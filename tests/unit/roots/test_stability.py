@@ -191,10 +191,10 @@ CASES = {
         (root_near(warmed, 3.7),),
         region=Modes(1),
     ),
-    # The mass on the negative spring falls away, and the function, which is 0, holds nothing of it.
+    # The mass on the negative spring falls away, as a hidden pole of the function, which is 0.
     "a mass that nothing sees": Said(elements(UNSEEN.replace("STIFF", "1"), output="tip"), "stable"),
     "a mass that falls and nothing sees": Said(
-        elements(UNSEEN.replace("STIFF", "-1"), output="tip"), "unknown", None
+        elements(UNSEEN.replace("STIFF", "-1"), output="tip"), "unstable", None
     ),
 }  # fmt: skip
 
