@@ -320,5 +320,6 @@ FUNCTIONS: dict[str, ElementaryFunction] = {
         ElementaryFunction("sinh", lambda x: x.sinh(), r"\sinh", lambda x: x.cosh()),
         ElementaryFunction("cosh", lambda x: x.cosh(), r"\cosh", lambda x: x.sinh()),
         ElementaryFunction("tanh", lambda x: x.tanh(), r"\tanh", lambda x: 1 - x.tanh() ** 2),
+        ElementaryFunction("atan", lambda x: x.atan(), r"\arctan", lambda x: 1 / (1 + x * x)),
     )
 }

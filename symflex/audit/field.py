@@ -301,8 +301,8 @@ class Arithmetic:
         """Return ``exp``, ``sin``, ``cos``, ``tan``, ``sinh``, ``cosh``, ``tanh`` or ``sqrt`` of a value."""
         if name == "sqrt":
             return self.power(argument, Fraction(1, 2))
-        if name == "log":
-            raise UnreadError("it takes a logarithm")
+        if name in ("log", "atan"):
+            raise UnreadError(f"it takes {'a logarithm' if name == 'log' else 'an arctangent'}")
         real, imaginary = self._multiples(argument)
         if name in CIRCULAR and not imaginary:
             cosine, sine = self._circular(real)

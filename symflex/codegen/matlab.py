@@ -38,8 +38,8 @@ KEYWORDS = frozenset(  # keywords of both languages
 
 FUNCTIONS = frozenset(  # what generated code uses, and constants that a reader would miss
     "i j pi e eps Inf inf NaN nan NA ans true false end nargin nargout varargin varargout exp log sqrt sin "
-    "cos tan sinh cosh tanh abs real imag conj complex any all size zeros ones reshape numel unique isempty "
-    "isnumeric islogical isreal isscalar isstruct isfield isa ischar char double error cell cellfun "
+    "cos tan sinh cosh tanh atan abs real imag conj complex any all size zeros ones reshape numel unique "
+    "isempty isnumeric islogical isreal isscalar isstruct isfield isa ischar char double error cell cellfun "
     "fieldnames struct2cell mod max min find repmat eye eig diag ceil log2 isfinite sum struct "
     "acos cumsum diff fliplr floor interp1 inv isequal ismember kron nchoosek num2cell prod sort".split()
 )

@@ -40,7 +40,7 @@ RESERVED: Final = frozenset(
     "final flow for function if import impure in initial inner input loop model not operator or outer "
     "output package parameter partial protected public pure record redeclare replaceable return stream "
     "then true type when while within time pi Real Integer Boolean String abs sqrt sin cos tan sinh "
-    "cosh tanh exp log pre delay sample edge change".split()
+    "cosh tanh atan exp log pre delay sample edge change".split()
 )
 PI: Final = 'constant Real pi = 3.141592653589793 "the number pi"'
 WIDTH: Final = 100

@@ -363,7 +363,7 @@ class ExactEvaluator:
             raise ModelError(Diagnostic("SF910", message, expression.span, hint))
         if name == "sqrt" and inner.is_constant and (root := exact_root(inner.unit)) is not None:
             return Factored.number(self.ring, root)
-        if inner.is_zero and name in ("sin", "tan", "sinh", "tanh"):
+        if inner.is_zero and name in ("sin", "tan", "sinh", "tanh", "atan"):
             return Factored.number(self.ring, 0)
         if inner.is_zero and name in ("cos", "cosh", "exp"):
             return Factored.number(self.ring, 1)

@@ -12,7 +12,8 @@ from typing import NamedTuple
 from symflex.quantities import IMAGINARY_NAMES, IMAGINARY_UNIT, character_hint, code_point, unit_named
 from symflex.quantities.lalr import Token
 
-FUNCTIONS = ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh")  # with one argument each
+# With one argument each.
+FUNCTIONS = ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh", "atan")
 RECIPROCALS = {"cot": "tan", "sec": "cos", "csc": "sin", "coth": "tanh", "sech": "cosh", "csch": "sinh"}
 """What formulas write for one over a function."""
 

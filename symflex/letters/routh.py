@@ -70,8 +70,7 @@ class SymbolicRelation:
     def latex(self, labels: Mapping[str, str], mark: str = "") -> str:
         """Return the relation as LaTeX; what has no readable sides as its words."""
         sign = f" {mark}{self.sign} ".replace("!=", r"\neq")
-        own = {"atan": r"\operatorname{arctan}", **labels}
-        sides = (latex_expression(side, own) for side in self.sides or ())
+        sides = (latex_expression(side, labels) for side in self.sides or ())
         return sign.join(sides) if self.sides else rf"\text{{{self}}}"
 
 

@@ -253,5 +253,6 @@ SLOPES: Mapping[str, Callable[[Call], Expression]] = {
     "sinh": _same("cosh"),
     "cosh": _same("sinh"),
     "tanh": lambda call: sum_of([number(1), negative(power(call, 2))]),
+    "atan": _one_over(lambda call: sum_of([number(1), power(call.argument, 2)])),
 }
 """The derivatives of the functions, by what they are a call of."""

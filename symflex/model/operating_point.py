@@ -66,7 +66,7 @@ if TYPE_CHECKING:
 
 SOLVE = "solve"
 EXAMPLE = 'for instance x = "x_0", i = "i_0", solve = ["i_0"]'
-SMOOTH = f"write powers, {', '.join(FUNCTIONS)}, atan, and abs and sgn of what has a sign"
+SMOOTH = f"write powers, {', '.join(FUNCTIONS)}, and abs and sgn of what has a sign"
 DELAYED = 'write x\' for the derivative of x; what is delayed is a signal of its own: x_d = "exp(-s*T)*x"'
 TRIALS = 200  # random points, of which three are to be in the domain of all functions
 AGREEING = 3
@@ -520,8 +520,6 @@ class _AboutRest:
 
 def _solved(residual: Expression, unknown: str, wanted: Collection[str]) -> Expression | None:
     """Return the value for which a residual vanishes, if that is linear in it or in its square."""
-    if any(isinstance(n, Call) and n.name not in FUNCTIONS for n in nodes(residual)):
-        return None  # definitions have no atan
     residual = _over_one_line(residual, unknown)
     slope = simplified(derivative(residual, Name(unknown)), {})
     if is_number(slope, 0):

@@ -32,7 +32,7 @@ ACCENTS: Final = {
     "¨": "dot.double",
     "→": "arrow",
 }
-FUNCTIONS: Final = frozenset("cosh sinh tanh cos sin tan exp log ln coth".split())
+FUNCTIONS: Final = frozenset("cosh sinh tanh cos sin tan exp log ln coth arctan".split())
 TYPST_SIGNS: Final = {
     "−": "-",
     "⋅": "dot.op",

@@ -127,7 +127,7 @@ class Spelling:
 FENCES: Final = (("(", ")"), ("[", "]"), (r"\{", r"\}"))
 MOST_PRIMES: Final = 3
 # The letters of a function's name, with the space that sets it off on either side.
-_OPERATORS: Final = frozenset(("exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh", "coth"))
+_OPERATORS: Final = frozenset(("exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh", "coth", "arctan"))
 _WIDEST_OPERATOR: Final = always(2.3)
 TRIGONOMETRIC: Final = frozenset(("sin", "cos", "tan", "sinh", "cosh", "tanh"))
 _SHORT_EXPONENT: Final = 8
@@ -432,6 +432,7 @@ def is_short(expression: Expression) -> bool:
 
 def operator_size(function: str) -> Width:
     """Return the width of a function's name."""
+    function = function.replace("atan", "arctan")
     if function not in _OPERATORS:
         return _WIDEST_OPERATOR
     size = THIN_SIZES * 2

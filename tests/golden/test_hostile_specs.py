@@ -334,7 +334,7 @@ def test_a_payload_where_any_text_may_stand_is_accepted_and_does_nothing(tmp_pat
 NAMES = {
     "Python keywords": "lambda class def None True False import yield async match self print exec eval",
     "names the program uses": "sum0 sum1 x0 A B C D E I S N O Q det num den stand_in value node",
-    "names of functions": "sin cos sqrt exp log tanh abs max",
+    "names of functions": "sin cos sqrt exp log tanh atan abs max",
     "names of other languages": "int double while end function end_ inf nan NaN j i e",
 }
 

@@ -18,7 +18,7 @@ Number = Any  # mpmath's numbers have no types
 
 FUNCTIONS: dict[str, Callable[[Number], Number]] = {
     name: getattr(mpmath, name)
-    for name in ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh")
+    for name in ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh", "atan")
 }
 OPERATORS: dict[type[ast.operator], Callable[[Number, Number], Number]] = {
     ast.Add: operator.add,

@@ -46,7 +46,10 @@ def _series_solutions(c, terms):
 
 
 NAMES = {
-    **{name: _either(name) for name in ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh")},
+    **{
+        name: _either(name)
+        for name in ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh", "atan")
+    },
     "abs": abs,
     "complex": complex,
     "pi": math.pi,

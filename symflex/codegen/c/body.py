@@ -24,7 +24,7 @@ FEW, DEEPEST = 3, 3  # powers up to this are products; from as many nested calls
 _SUM, _PRODUCT, _SIGN, _LEAF = range(4)
 
 REAL_FUNCTIONS = {  # what C calls each of the elementary functions of a real number
-    name: name for name in ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh")
+    name: name for name in ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh", "atan")
 } | {"complex_exp": "exp"}
 
 
@@ -229,7 +229,7 @@ that firmware and Windows programs often include first."""
 FUNCTIONS = frozenset(  # what the code calls, and the types it uses
     """
     main size_t ptrdiff_t
-    sqrt exp log log2 ldexp ceil fmax fmin sin cos tan sinh cosh tanh fabs hypot pow copysign
+    sqrt exp log log2 ldexp ceil fmax fmin sin cos tan sinh cosh tanh atan fabs hypot pow copysign
     creal cimag
     memcpy uint64_t rint
     """.split()

@@ -89,6 +89,7 @@ _SLOPES: Final[dict[str, Callable[[tree.CodeNode, tree.CodeNode], tree.CodeNode]
     "cosh": lambda node, x: tree.Apply("sinh", x),
     "tan": lambda node, x: tree.Add((tree.ONE, tree.Multiply((node, node)))),
     "tanh": lambda node, x: tree.Add((tree.ONE, tree.Negate(tree.Multiply((node, node))))),
+    "atan": lambda node, x: tree.Divide(tree.ONE, tree.Add((tree.ONE, tree.Multiply((x, x))))),
 }  # derivatives of elementary functions, from ``node``, the function of x, and x
 
 

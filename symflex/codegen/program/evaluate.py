@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 CONSTANT_BITS = 256  # precision of powers of pi before they are rounded to a double
 
 NUMPY_FUNCTIONS = {  # what numpy calls each of the elementary functions, and the magnitude
-    name: name for name in ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh", "abs")
+    name: name for name in ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh", "atan", "abs")
 } | {"complex_sqrt": "sqrt"}
 
 

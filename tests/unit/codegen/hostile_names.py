@@ -61,8 +61,8 @@ PYTHON = [
     *"_larger _settled _stacked _largest _root_steps".split(),
     *"_grown _squared _MOST_HALVINGS _matrix_product _in_front".split(),
     *"series_solutions propagated characteristic_roots mode_values modal_amplitudes modal_value".split(),
-    *"mean_over_circle state_space exp log sqrt sin cos tan sinh cosh tanh real imag where asarray".split(),
-    *"value limit is_far inverse num den c_1 t_1 e_1 sum0 z x_ omega omega_ s pi _ l O m k b".split(),
+    *"mean_over_circle state_space exp log sqrt sin cos tan sinh cosh tanh atan real imag where".split(),
+    *"asarray value limit is_far inverse num den c_1 t_1 e_1 sum0 z x_ omega omega_ s pi _ l O m k b".split(),
     *"gamma held place PARAMETERS X_over_F _X_over_F A B C D".split(),
 ]
 C = """

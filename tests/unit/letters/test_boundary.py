@@ -49,7 +49,7 @@ def test_boundaries_of_textbooks():
 
 def test_an_arc_tangent_is_typeset_as_a_function():
     shown = loop("K T L", "K/(T*s + 1)*exp(-s*L)").conditions(over=("K", "L")).latex()
-    assert r"- \operatorname{arctan}(T \omega)" in shown
+    assert r"- \arctan(T \omega)" in shown
 
 
 def on_rod(s, v):

@@ -86,6 +86,10 @@ EQUATIONS = {
                  {"J": 0.02, "k": 0.2, "w": 0.6, "q": 2}),
     "bracket": ("v", ["(m*v*cosh(v))' + b*tanh(v) = F"], {"v": "V", "F": "b*tanh(V)"}, [], "F",
                 {"m": 2, "b": 3, "V": 0.7}),
+    "arctangents": (
+        "x y", ["x' + x*atan(y) = b*u", "y' + atan(x*y) = u"], {"x": "X", "y": "Y", "u": "atan(X*Y)"}, ["b"],
+        "u", {"X": 1.5, "Y": 0.5},
+    ),
     "logarithm and tangent": ("x", ["m*x'' + k*log(1 + x) + c*tan(x)*x' + x^-2 = F"],
                               {"x": "X", "F": "k*log(1 + X) + 1/X^2"}, [], "F",
                               {"m": 2, "k": 3, "c": 0.2, "X": 0.7}),
@@ -342,7 +346,7 @@ POINTS = {  # equation, signals, values at rest, solve
     "in a loop": ("x' = u - x*w", {"w": "3*v", "v": "w/(1 + s) + x"}, {"x": "a"}, ["u"], "SF407"),
     "given and solved for": ("x' = u - x^2", {}, {"x": "a"}, ["x", "u"], "SF210"),
     "a root of a negative number": ("x' = u - x^2 - 1", {}, {}, ["x"], "SF224"),
-    "an arctangent without a value": ("x' = u - atan(x)", {}, {"x": "a"}, ["u"], "SF407"),
+    "a sum without a value": ("x' = u + exp(u) - x", {}, {"x": "a"}, ["u"], "SF407"),
     "a value that holds for these numbers": ("x' = u - x^2 - 1", {}, {"x": "a", "u": "2*a + 1"}, [], "SF407"),
 }
 # fmt: on
