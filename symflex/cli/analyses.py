@@ -45,6 +45,7 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     """
     from symflex import pipeline
     from symflex.cli.progress import ProgressBar
+    from symflex.print.motion import solved_json, solved_text
     from symflex.print.roots import SHORT_DIGITS, roots_text
     from symflex.roots.region import region_of
 
@@ -56,12 +57,16 @@ def roots(spec: Specification, given: RootsOptions) -> int:
         model = spec.load()
         pair = first_pair(model, given.tf, "showing")
         shown = (asked := given.digits or model.analysis.digits) or 15
-        is_explained = bool(given.sensitivity) or given.explain
-        (bound,) = pipeline.derive_for_roots(model, [pair], is_named=is_explained)
+        (bound,) = pipeline.derive_for_roots(model, [pair], is_named=bool(given.sensitivity) or given.explain)
     with ProgressBar() as bar, entered_budget().reporting_to(bar).entered():
         located = pipeline.roots(bound, chosen, shown)
     moved, clouds = tuple["RootDerivative"](), tuple["RootCloud"]()
-    more: dict[str, tuple[object, str]] = {}  # by key of JSON, the data and the text
+    # By key of JSON, the data and the text.
+    more: dict[str, tuple[object, str]] = {
+        key: (entries, "\n".join(solved_text(model, asked or SHORT_DIGITS, above="")))
+        for key, entries in solved_json(model, shown).items()
+        if given.format == "text"
+    }
     width, is_over = terminal_width(), located.certificate.is_exceeded
     try:
         if given.letters:
@@ -96,11 +101,9 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     else:
         every = [roots_text(located, asked or SHORT_DIGITS, width), *(told for _, told in more.values())]
         say("\n".join(every[given.format == "latex" :]))
-    if is_over:
-        return 5
-    if any(m.status == "undecided" for m in moved) or any(each.count is None for each in clouds):
-        return 4
-    return 0 if located.certificate.certified and not (given.strict and located.excluded) else 4
+    is_decided = all(m.status != "undecided" for m in moved) and all(c.count is not None for c in clouds)
+    is_certified = located.certificate.certified and not (given.strict and located.excluded)
+    return 5 if is_over else 0 if is_decided and is_certified else 4
 
 
 @command_of("rational", RationalOptions)

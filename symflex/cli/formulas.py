@@ -19,7 +19,7 @@ from symflex.options import AuditOptions, CheckOptions, DeriveOptions, ExportOpt
 
 if TYPE_CHECKING:
     from symflex.codegen.export import Exporter
-    from symflex.model import ModelParameter
+    from symflex.model import Model, ModelParameter
 
 TARGETS_MEANT = {  # export targets by other names
     "python": "numpy",
@@ -44,6 +44,7 @@ def check(spec: Specification, given: CheckOptions) -> int:
     """
     from symflex import pipeline
     from symflex.model.unused import free_ends
+    from symflex.print.motion import motion_json, motion_text, solved_json, solved_text
 
     model = None
     try:
@@ -72,9 +73,8 @@ def check(spec: Specification, given: CheckOptions) -> int:
             "conversions": [_conversion_json(p) for p in model.conversions],
             "free_ends": [{"element": use.name, "node": node} for use, node in ends],
         }
+        document |= solved_json(model)
         if given.equations:
-            from symflex.print.motion import motion_json
-
             document |= motion_json(model)
         emit_json({"schema": "symflex.check/1", "ok": True, **document})
         return code
@@ -105,9 +105,9 @@ def check(spec: Specification, given: CheckOptions) -> int:
         say(listed("symbolic (no value): ", symbolic))
     for parameter in model.conversions:
         say(f"  {_conversion(parameter)}")
+    for line in solved_text(model):
+        say(line)
     if given.equations:
-        from symflex.print.motion import motion_text
-
         say(motion_text(model))
     return code
 
@@ -196,7 +196,7 @@ def derive(spec: Specification, given: DeriveOptions) -> int:
     if is_json:
         from symflex.print.json_format import derive_document
 
-        emit_json(derive_document(entries))
+        emit_json(derive_document(entries) | _solved_json(model))
     elif given.format == "latex":
         from symflex.print.latex import transfer_function_latex
 
@@ -212,7 +212,21 @@ def derive(spec: Specification, given: DeriveOptions) -> int:
         from symflex.print.text import derive_text
 
         say(derive_text(entries, terminal_width(), is_named=given.form is not None))
+        if model.operating_point is not None:
+            from symflex.print.motion import solved_text
+
+            for line in solved_text(model, given.digits, above=""):
+                say(line)
     return 0
+
+
+def _solved_json(model: Model) -> dict[str, object]:
+    """Return the values at rest that were solved for, which few models have."""
+    if model.operating_point is None:
+        return {}
+    from symflex.print.motion import solved_json
+
+    return solved_json(model)
 
 
 def _read_off(spec: Specification, given: DeriveOptions) -> int:

@@ -22,9 +22,9 @@ KEYWORDS = frozenset(
 
 NAMES = frozenset(  # what generated code uses, and names that a reader or the module itself would miss
     "pi im e Inf NaN Inf64 NaN64 nothing missing exp log sqrt sin cos tan sinh cosh tanh atan abs abs2 real "
-    "imag conj complex float signbit cis zero one zeros length eltype iszero isfinite all max min maximum ceil "
-    "log2 fill push findfirst zip Base Core Main LinearAlgebra Number Real Complex ComplexF64 Float64 Int "
-    "Tuple Vector Vararg Dict String NamedTuple eval include PARAMETERS TRANSFER_FUNCTIONS "
+    "imag conj complex float signbit cis zero one zeros length eltype iszero isfinite all max min maximum "
+    "ceil log2 fill push findfirst zip Base Core Main LinearAlgebra Number Real Complex ComplexF64 Float64 "
+    "Int Tuple Vector Vararg Dict String NamedTuple eval include PARAMETERS TRANSFER_FUNCTIONS "
     "FREQUENCY_RESPONSES".split()
 )
 RESERVED = KEYWORDS | NAMES | {"s"}

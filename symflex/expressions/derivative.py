@@ -99,6 +99,14 @@ def derivative(expression: Expression, leaf: Expression) -> Expression:
     raise ValueError(expression)
 
 
+def divisor(node: Expression) -> Expression | None:
+    """Return what a quotient, or a power that is one, divides by; None of all else."""
+    match node:
+        case Quotient(_, below) | Power(below, Negative(Number())):
+            return below
+    return None
+
+
 def rate(expression: Expression, varies: Callable[[Expression], bool]) -> Expression:
     """Return the derivative in time, by the chain rule over names, and derivatives, that vary.
 

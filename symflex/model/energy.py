@@ -38,14 +38,23 @@ from symflex.expressions import (
 from symflex.expressions import nodes as walk
 from symflex.expressions.derivative import derivative, rate, without_brackets
 from symflex.library.elements import ELEMENTS
+from symflex.model.constants_at_rest import Constants
 from symflex.model.declarations import in_order
 from symflex.model.fields import name_problem, parsed
 from symflex.model.model import NodeReference, OperatingPoint, Signal
 from symflex.model.network import Draft, DraftElement
-from symflex.model.operating_point import NOWHERE, SMOOTH, in_s, linearised, read_operating_point
+from symflex.model.operating_point import (
+    NOWHERE,
+    SMOOTH,
+    in_s,
+    linearised,
+    note_divisions,
+    read_operating_point,
+)
 from symflex.model.reading import Reader
+from symflex.model.settings import Setting, settled
 from symflex.model.spec import TableValue
-from symflex.model.units import AsWritten, exact_expression
+from symflex.model.units import AsWritten
 
 KEYS = ("coordinates", "kinetic", "potential", "dissipation", "forces", "constraints", "doc")
 EXAMPLE = 'for instance coordinates = ["x"], kinetic = "m*x\'^2/2", potential = "k*x^2/2"'
@@ -53,12 +62,12 @@ SOURCES = {"translation": ("force_source", "f"), "rotation": ("torque_source", "
 
 
 def read_energy(
-    reader: Reader, section: TableValue | None, taken: Collection[str], cycles: AsWritten
+    reader: Reader, section: TableValue | None, constants: Constants, cycles: AsWritten
 ) -> tuple[Signal, ...]:
-    """Return an equation for every coordinate and every constraint; ``taken`` names what is constant."""
+    """Return an equation for every coordinate and every constraint."""
     if section is None:
         return ()
-    what = "[energy]"
+    what, taken = "[energy]", constants.expressions
     reader.keys(section, KEYS, what, EXAMPLE)
     given = section.get("coordinates")
     if given is None:
@@ -91,6 +100,7 @@ def read_energy(
             value := reader.expression(force.value, f"force on '{force.key}'", quantities=False)
         ) is not None:
             forces[force.key] = cycles.read(value)
+    note_divisions(reader, constants, (kinetic, potential, dissipation, *equations, *forces.values()))
     if reader.problems:
         raise SpecError(*reader.problems)  # of unknowns without equation nothing true can be said
 
@@ -148,14 +158,20 @@ def with_motion(
     draft: Draft,
     taken: Collection[str],
     cycles: AsWritten,
+    settings: Mapping[str, Setting],
 ) -> tuple[Draft, OperatingPoint | None]:
     """Return a draft whose ``[equations]`` and ``[energy]`` are linear, and the point at which they are."""
-    energy = read_energy(reader, sections["energy"], taken, cycles)
+    constants = Constants({**dict.fromkeys(taken), **{d.name: d.expression for d in draft.definitions}})
+    constants.declare(draft.declared, cycles.eager)
+    energy = read_energy(reader, sections["energy"], constants, cycles)
     inputs = {d.input.name for d in draft.inputs}
     loads = {x.name for x in (*draft.signals, *energy)} | inputs
     nodes = {r.node for e in draft.elements for _, references in e.nodes for r in references}
     nodes |= {a.reference.node for source in draft.inputs for a in source.attachments()}
     rest = read_operating_point(reader, sections["operating_point"], taken, loads | nodes, cycles)
+    made = settled(reader, rest.declared, settings) if rest else ()
+    constants.declare(made, cycles.eager)
+    parameters = {p.name: p for p in (*draft.declared, *made)}
     if energy:
         rest = rest or NOWHERE
         multipliers = [x.name for x in energy if x.name.startswith("lambda_")]
@@ -165,6 +181,7 @@ def with_motion(
             values={**rest.values, **known},
             multipliers=tuple(v.name for v in known.values()),
             coordinates=tuple(x.name for x in energy if x.name not in multipliers),
+            constraints=tuple(multipliers),
         )
     signals, found, point, solved = linearised(
         reader,
@@ -172,16 +189,10 @@ def with_motion(
         rest,
         inputs,
         loads | nodes,
-        {**dict.fromkeys(taken), **{d.name: d.expression for d in draft.definitions}},
-        {
-            p.name: exact_expression(value)
-            for p in draft.declared
-            if (value := p.resolve(is_converted=p.name in cycles.eager).value) is not None
-        },
-        {p.name for p in draft.declared if p.assume != "positive"},
+        constants,
     )
     declared = []
-    for p in draft.declared:
+    for p in parameters.values():
         if p.name in solved and p.quantity is not None:
             counted = 0 if p.name in cycles.eager else p.quantity.cycles
             quantity = replace(p.quantity, magnitude=solved[p.name], pi_power=0, cycles=counted)

@@ -10,6 +10,9 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any, Final, Literal, TypeVar
 
+from flint import arb
+
+from symflex.balls import precision
 from symflex.errors import Diagnostic, Span, Text
 from symflex.expressions import Attribute, Equation, Expression, Number, names, parse
 from symflex.library.blocks import ROOT
@@ -45,6 +48,7 @@ class ExactValue:
 ONE: Final = ExactValue(Fraction(1))
 J: Final = ExactValue(Fraction(1), is_imaginary=True)
 IMAGINARY: Final = "j"  # the imaginary unit, unless the model gives this name another meaning
+FOUND_BITS: Final = 256  # of the value of a parameter that was solved for
 PAIRS_SHOWN: Final = 6  # number of transfer functions that a message lists
 
 
@@ -215,6 +219,28 @@ class FieldProblem:
 
 
 @dataclass(frozen=True, slots=True)
+class FoundValue:
+    """A value at rest that was solved for, in the unit that its parameter was declared in."""
+
+    name: str
+    value: Fraction
+    radius: Fraction  # bounds the distance from ``value`` to the solution
+    unit: str = ""
+    declared: Fraction | None = None  # what the solution was looked for from
+
+    @property
+    def ball(self) -> arb:
+        """The value as a ball."""
+        with precision(FOUND_BITS):
+            return arb(self.value.numerator) / self.value.denominator + arb(0, float(self.radius))
+
+    @property
+    def declared_text(self) -> str | None:
+        """The declared value as a decimal."""
+        return None if self.declared is None else f"{float(self.declared):.15g}"
+
+
+@dataclass(frozen=True, slots=True)
 class OperatingPoint:
     """Values at rest, the nonlinear equations that hold there, and what became of them."""
 
@@ -224,7 +250,9 @@ class OperatingPoint:
     # Of Lagrange's equations the coordinates, and in their order the matrices of mass, damping and stiffness.
     coordinates: tuple[str, ...] = ()
     matrices: tuple[tuple[tuple[Expression, ...], ...], ...] = ()
-    solved_with: frozenset[str] = frozenset()  # names in what was solved by value
+    # Names whose values were used: in what was solved by value, and for signs.
+    solved_with: frozenset[str] = frozenset()
+    found: tuple[FoundValue, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

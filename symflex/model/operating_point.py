@@ -14,17 +14,12 @@ random values, so a number that is not zero is noticed, and an identity missed w
 
 from __future__ import annotations
 
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import count
-from random import Random
 from typing import TYPE_CHECKING
 
-from flint import arb, arb_mat
-
 from symflex.algebra import FUNCTIONS, LAPLACE
-from symflex.balls import precision, stays_inside
 from symflex.errors import Span, SpecError, nearest
 from symflex.expressions import (
     Attribute,
@@ -36,9 +31,6 @@ from symflex.expressions import (
     Number,
     Power,
     Product,
-    Quotient,
-    Sum,
-    fold,
     format_expression,
     is_number,
     negative,
@@ -46,18 +38,21 @@ from symflex.expressions import (
     number,
     power,
     product_of,
-    quotient,
     replace_node,
     replace_values,
     sum_of,
 )
-from symflex.expressions.derivative import SLOPES, derivative, simplified, without_brackets
+from symflex.expressions.derivative import SLOPES, derivative, divisor, simplified, without_brackets
 from symflex.expressions.nodes import Call, Differentiated
 from symflex.expressions.trigonometric import shorter
-from symflex.model.model import Definition, OperatingPoint, Signal
-from symflex.model.reading import Reader, literal_value
+from symflex.model.constants_at_rest import Constants
+from symflex.model.declarations import DeclaredParameter
+from symflex.model.model import Assumption, Definition, FoundValue, OperatingPoint, Signal
+from symflex.model.reading import QuantityLiteral, Reader, literal_value
 from symflex.model.scope import nearest_name
-from symflex.model.units import AsWritten, lower
+from symflex.model.solve_at_rest import EXAMPLE, Left, Solving
+from symflex.model.units import AsWritten
+from symflex.quantities import DIMENSIONLESS, Quantity
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
@@ -65,14 +60,9 @@ if TYPE_CHECKING:
     from symflex.model.spec import TableValue
 
 SOLVE = "solve"
-EXAMPLE = 'for instance x = "x_0", i = "i_0", solve = ["i_0"]'
+SIGNS = ("abs", "sgn", "sign")
 SMOOTH = f"write powers, {', '.join(FUNCTIONS)}, and abs and sgn of what has a sign"
 DELAYED = 'write x\' for the derivative of x; what is delayed is a signal of its own: x_d = "exp(-s*T)*x"'
-TRIALS = 200  # random points, of which three are to be in the domain of all functions
-AGREEING = 3
-BITS = 256
-STEPS = 60  # Newton steps, from a value a person gave
-DIGITS = 40  # of a parameter that has no formula
 LONGEST = 500  # parts of a value at rest in which values above it are put
 
 
@@ -82,13 +72,15 @@ class AtRest:
 
     values: Mapping[str, Expression]  # by name, "x'" for a rate
     solve: tuple[str, ...]
-    definitions: tuple[Definition, ...]  # of values that were written as numbers
+    declared: tuple[DeclaredParameter, ...]  # values that were written as numbers
+    definitions: tuple[Definition, ...]  # the same of those in cycles, which are radians in formulas
     span: Span | None
     multipliers: tuple[str, ...] = ()  # values that nobody has to give
     coordinates: tuple[str, ...] = ()  # of Lagrange's equations
+    constraints: tuple[str, ...] = ()  # names of multipliers, which the equations of constraints bear
 
 
-NOWHERE = AtRest({}, (), (), None)
+NOWHERE = AtRest({}, (), (), (), None)
 
 
 def read_operating_point(
@@ -101,7 +93,8 @@ def read_operating_point(
     """Return the values of ``[operating_point]``; ``taken`` are names of what is constant."""
     if section is None:
         return None
-    values, definitions, solve = dict[str, Expression](), list[Definition](), tuple[str, ...]()
+    values, solve = dict[str, Expression](), tuple[str, ...]()
+    declared, definitions = list[DeclaredParameter](), list[Definition]()
     for entry in section.entries:
         if entry.key == SOLVE:
             named = reader.strings(entry, "solve of [operating_point]") or ()
@@ -113,9 +106,11 @@ def read_operating_point(
         value = cycles.read(value)
         literal = literal_value(value)
         if literal is not None and literal != 0:
-            # A number alone would fit any unit.
             name = _unused(entry.key, {*taken, *moving})
-            definitions.append(Definition(name, value, "", entry.key_span))
+            if isinstance(value, QuantityLiteral) and value.quantity.cycles:
+                definitions.append(Definition(name, value, "", entry.key_span))
+            else:
+                declared.append(_declared(name, value, literal, entry.key_span))
             value = Name(name, span=value.span)
         meant = replace_values(value, {Name(n): v for n, v in values.items()})
         value = meant if len(nodes(meant)) < LONGEST else value
@@ -125,7 +120,17 @@ def read_operating_point(
         reader.note("SF210", message, values[p].span or section.span, "leave out one of them")
     unknown = {p: _unused(p, {*taken, *moving}) for p in solve if p in moving and p not in values}
     values |= {p: Name(name) for p, name in unknown.items()}
-    return AtRest(values, tuple(unknown.get(p, p) for p in solve), tuple(definitions), section.span)
+    wanted = tuple(unknown.get(p, p) for p in solve)
+    return AtRest(values, wanted, tuple(declared), tuple(definitions), section.span)
+
+
+def _declared(name: str, value: Expression, literal: Fraction, span: Span) -> DeclaredParameter:
+    """Return the parameter that a number or quantity is, so that formulas have a name for it."""
+    quantity = Quantity(literal, 0, 0, DIMENSIONLESS, 0, "")
+    if isinstance(value, QuantityLiteral):
+        quantity = value.quantity
+    assume: Assumption = "positive" if literal > 0 else "real"
+    return DeclaredParameter(name, quantity, bool(quantity.unit), "", assume, "", "", span)
 
 
 def _unused(key: str, taken: Collection[str]) -> str:
@@ -140,21 +145,18 @@ def linearised(
     rest: AtRest | None,
     inputs: Collection[str],
     moving: Collection[str],
-    constants: Mapping[str, Expression | None],
-    numbers: Mapping[str, Expression],
-    signed: Collection[str],
+    constants: Constants,
 ) -> tuple[tuple[Signal, ...], list[Definition], OperatingPoint | None, Mapping[str, Fraction]]:
     """Return linear signals, definitions of values at rest, the operating point, and solved parameters."""
-    # ``moving`` are all names that vary, ``constants`` all that do not, with the expressions of those that
-    # are defined; ``numbers`` are the values of parameters, ``signed`` those that may be negative. Without an
-    # operating point only derivatives are rewritten, as products with s.
+    # ``moving`` are all names that vary. Without an operating point only derivatives are rewritten, as
+    # products with s.
     equations = {x.name: x.expression for x in signals if isinstance(x.expression, Equation)}
     primes = (isinstance(n, Derivative | Differentiated) for e in equations.values() for n in nodes(e))
     if not equations or (rest is None and not any(primes)):
         return signals, [], None, {}
-    point = _AboutRest(
-        reader, rest or NOWHERE, frozenset(inputs), dict(constants), numbers, frozenset(signed)
-    )
+    written = (x.expression for x in signals)
+    note_divisions(reader, constants, (*written, *(rest.values.values() if rest else ())))
+    point = _AboutRest(reader, rest or NOWHERE, frozenset(inputs), constants)
     point.check_all_named(moving, equations.values())
     if reader.problems:
         raise SpecError(*reader.problems)
@@ -171,7 +173,7 @@ def linearised(
     for name, value in point.signals.items():
         if name in point.values:  # given, and to be right
             left = point.at_rest(sum_of([Name(name), negative(value)]))
-            point.left_over.append((left, Equation(Name(name), value, span=point.values[name].span)))
+            point.left_over.append(Left(left, Equation(Name(name), value, span=point.values[name].span)))
     parts = (*equations.values(), *point.signals.values())
     products = [n for e in parts for n in nodes(e) if isinstance(n, Product)]
     after_s = {id(f) for n in products if any(map(_order_of_s, n.factors)) for f in n.factors}
@@ -181,10 +183,28 @@ def linearised(
     if None not in made.values():
         point.check_names(rest)
         point.check_at_rest()
+        if not reader.problems:
+            point.check_constraints(equations)
     if reader.problems:
         raise SpecError(*reader.problems)
     kept = tuple(replace(x, expression=made.get(x.name) or x.expression) for x in signals)
     return kept, point.definitions, point.described(equations, made), point.by_value
+
+
+def note_divisions(reader: Reader, constants: Constants, expressions: Iterable[Expression]) -> None:
+    """Note every part of what is written that divides by zero, whatever the names in it are."""
+    for whole in expressions:
+        for node in nodes(whole):
+            below = divisor(node)
+            if below is None or any(
+                isinstance(n, Differentiated) or (isinstance(n, Call) and n.name not in (*FUNCTIONS, *SIGNS))
+                for n in nodes(below)
+            ):
+                continue
+            rates = [n for n in nodes(below) if isinstance(n, Derivative)]
+            plain = replace_values(below, {n: Name(format_expression(n)) for n in rates})
+            if constants.vanishes(plain):
+                reader.note("SF224", "division by zero", below.span or node.span or whole.span)
 
 
 def in_s(expression: Expression, names: Collection[str] | None = None) -> Expression:
@@ -201,24 +221,22 @@ class _AboutRest:
         reader: Reader,
         rest: AtRest,
         inputs: frozenset[str],
-        constants: dict[str, Expression | None],
-        numbers: Mapping[str, Expression],
-        signed: frozenset[str],
+        constants: Constants,
     ) -> None:
         self.reader, self.rest, self.inputs, self.constants = reader, rest, inputs, constants
-        self.signed = signed
         self.by_value: dict[str, Fraction] = {}
-        self.solved_with: set[str] = set()
+        self.found: tuple[FoundValue, ...] = ()
+        self.used: set[str] = set()  # names whose values were used
+        self.decided: dict[Expression, int] = {}  # signs of arguments of abs and sgn
+        self.whole: list[Equation] = []  # at rest, as they are written
         self.bare: set[Expression] = set()  # names that occur without a derivative
         self.slopes: list[dict[str, Expression]] = []  # of each equation, by what varies
         self.values = dict(rest.values)
         self.definitions = list(rest.definitions)
-        self.constants |= {d.name: d.expression for d in rest.definitions} | dict.fromkeys(
+        constants.expressions |= {d.name: d.expression for d in rest.definitions} | dict.fromkeys(
             (*rest.solve, *rest.multipliers)
         )
-        with precision(BITS):
-            self.known = {name: self._value(value, {}, None) for name, value in numbers.items()}
-        self.left_over: list[tuple[Expression, Equation]] = []
+        self.left_over: list[Left] = []
         self.seen: set[str] = set()
         self.signals: dict[str, Expression] = {}  # explicit ones, which follow from the others
 
@@ -226,7 +244,7 @@ class _AboutRest:
         """Tell whether a node is a leaf that varies in time."""
         match node:
             case Name(name):
-                return name not in self.constants and name not in (LAPLACE, "pi")
+                return name not in self.constants.expressions and name not in (LAPLACE, "pi")
             case Derivative() | Attribute():
                 return True
         return False
@@ -237,19 +255,22 @@ class _AboutRest:
             name = leaf.name if isinstance(leaf, Name | Derivative) else None
             if name is None or name in moving or not self.varies(leaf):
                 continue
-            message, hint = f"unknown name '{name}'", nearest_name(name, [*moving, *self.constants])
-            if name in self.constants:
+            message, hint = (
+                f"unknown name '{name}'",
+                nearest_name(name, [*moving, *self.constants.expressions]),
+            )
+            if name in self.constants.expressions:
                 message, hint = f"'{name}' is constant and has no derivative in time", None
             self.reader.note("SF210", message, leaf.span, hint)
         for call in (n for e in (*equations, *self.rest.values.values()) for n in nodes(e)):
-            if isinstance(call, Call) and self.rest is not NOWHERE and call.name not in (*FUNCTIONS, "abs"):
+            if isinstance(call, Call) and self.rest is not NOWHERE and call.name not in (*FUNCTIONS, *SIGNS):
                 message = f"unknown function '{call.name}'"
                 if not any(map(self.varies, nodes(call))):
                     self.reader.note("SF210", message, call.span, nearest(call.name, FUNCTIONS) or SMOOTH)
         for value in self.rest.values.values():
             for leaf in (n for n in nodes(value) if self.varies(n) or n == Name(LAPLACE)):
                 message = f"'{format_expression(leaf)}' is not a parameter; values at rest are constant"
-                hint = nearest_name(format_expression(leaf), list(self.constants))
+                hint = nearest_name(format_expression(leaf), list(self.constants.expressions))
                 self.reader.note("SF210", message, leaf.span or value.span, hint)
 
     def linear(self, equation: Equation) -> Equation | None:
@@ -263,9 +284,9 @@ class _AboutRest:
             self._infer_rates(equation)
             slopes = [(n, shorter(self.at_rest(derivative(whole, n)))) for n in leaves]
             values = {n: self._value_at_rest(format_expression(n)) for n in leaves}
-            self._check_domain(replace_values(whole, values), equation.span)
+            self.whole.append(Equation(replace_values(whole, values), number(0), span=equation.span))
             rest = simplified(self.at_rest(whole), {LAPLACE: number(0)})
-            self.left_over.append((shorter(rest), equation))
+            self.left_over.append(Left(shorter(rest), equation))
         except ValueError as error:
             part = error.args[0]
             message = f"'{format_expression(part)}' has no derivative here"
@@ -286,16 +307,20 @@ class _AboutRest:
             return Equation(sum_of(left), sum_of(right), span=equation.span)
         return None
 
-    def _check_domain(self, whole: Expression, span: Span | None) -> None:
-        """Note a logarithm or root that has no value for the values that parameters have."""
-        with precision(BITS):
-            for call in (n for n in nodes(whole) if isinstance(n, Call)):
-                with suppress(KeyError):  # what has no value yet
-                    if not self._value(call, dict(self.known), None).is_finite():
-                        message = f"'{format_expression(call)}' has no value at the operating point"
-                        self.reader.note(
-                            "SF224", message, call.span or span, "correct the values of parameters"
-                        )
+    def check_domain(self) -> None:
+        """Note what has no value with the values at rest: a quotient by zero, a logarithm or root."""
+        for equation in self.whole:
+            for node in nodes(equation.left):
+                below = divisor(node)
+                value = self.constants.here(node if below is None else below)
+                if below is not None and value is not None and value.contains(0):
+                    message = f"'{format_expression(below)}' is zero at the operating point: division by zero"
+                elif below is None and isinstance(node, Call) and value is not None and not value.is_finite():
+                    message = f"'{format_expression(node)}' has no value at the operating point"
+                else:
+                    continue
+                span = (below or node).span or equation.span
+                self.reader.note("SF224", message, span, "correct the values of parameters")
 
     def _with_primes(self, expression: Expression) -> Expression:
         """Return ``x''`` in place of ``s^2*x``."""
@@ -330,13 +355,24 @@ class _AboutRest:
         rest = simplified(
             replace_values(expression, leaves), {format_expression(n): v for n, v in leaves.items()}
         )
-        for part in [n for n in nodes(rest) if isinstance(n, Call) and n.name in ("abs", "sgn", "sign")]:
-            size = part.argument.operand if isinstance(part.argument, Negative) else part.argument
-            if is_number(size, 0) or not self._is_positive(size):
-                raise ValueError(part)
-            sign = number(1 if size is part.argument else -1)
-            rest = replace_node(rest, part, size if part.name == "abs" else sign)
+        while parts := [n for n in nodes(rest) if isinstance(n, Call) and n.name in SIGNS]:
+            part = parts[-1]  # no other is inside of it
+            sign = self._sign(part)
+            size = part.argument if sign > 0 else negative(part.argument)
+            rest = replace_node(rest, part, size if part.name == "abs" else number(sign))
         return simplified(rest, {})
+
+    def _sign(self, part: Call) -> int:
+        """Return the sign of what abs or sgn is of, by the values of parameters if it depends on them."""
+        sign = self.constants.sign(part.argument)
+        if sign is None:
+            value = self.constants.here(part.argument)
+            sign = 0 if value is None else int(value > 0) - int(value < 0)
+            self.used |= self.constants.behind(part.argument)
+        if not sign:
+            raise ValueError(part)
+        self.decided[part.argument] = sign
+        return sign
 
     def _value_at_rest(self, name: str) -> Expression:
         if name not in self.values and name in self.signals:
@@ -346,17 +382,6 @@ class _AboutRest:
                 message, hint = f"'{name}' depends on itself at rest", "give its value in [operating_point]"
                 self.reader.note("SF407", message, self.rest.span, hint)
         return self.values.get(name, number(0))
-
-    def _is_positive(self, size: Expression) -> bool:
-        """Tell whether a size is made of positive parts alone."""
-        for node in nodes(size):
-            defined = self.constants.get(node.name) if isinstance(node, Name) else None
-            literal = None if defined is None else literal_value(defined)
-            if isinstance(node, Negative | Call) or (isinstance(node, Name) and node.name in self.signed):
-                return False
-            if defined is not None and not (self._is_positive(defined) if literal is None else literal > 0):
-                return False
-        return True
 
     def described(
         self, equations: Mapping[str, Equation], made: Mapping[str, Equation | None]
@@ -370,7 +395,7 @@ class _AboutRest:
         )
         linear = tuple(e for e in made.values() if e is not None)
         values = tuple((n, v) for n, v in self.values.items() if n.rstrip("'") in self.seen)
-        own = coordinates, matrices if coordinates else (), frozenset(self.solved_with)
+        own = coordinates, matrices if coordinates else (), frozenset(self.used), self.found
         return OperatingPoint(values, tuple(equations.values()), linear, *own)
 
     def check_names(self, rest: AtRest) -> None:
@@ -389,43 +414,28 @@ class _AboutRest:
 
     def check_at_rest(self) -> None:
         """Solve what is asked for, and note every equation that does not hold at rest."""
-        wanted = [*self.rest.multipliers, *self.rest.solve]
-        left = [(_without_factor(r, wanted), e) for r, e in self.left_over]
-        while found := [
-            (p, solution, equation)
-            for rest, equation in left
-            for p in wanted
-            if (solution := _solved(rest, p, wanted)) is not None
-        ]:
-            others = [len({Name(p) for p in wanted} & {*nodes(solution)}) for _, solution, _ in found]
-            unknown, solution, equation = found[others.index(min(others))]
-            if unknown in self.signed and unknown in self.known and isinstance(solution, Call):
-                # of two roots, the declared
-                solution = negative(solution) if self.known[unknown] < 0 else solution
-            self._check_domain(solution, equation.span)
-            wanted.remove(unknown)
-            self.constants[unknown] = solution
-            self.definitions.append(Definition(unknown, solution, "", equation.span))
-            known = {unknown: solution} if min(others) else {}
-            left = [(simplified(r, known), e) for r, e in left if e is not equation]
-        rows = [(r, e) for r, e in left if any(Name(p) in nodes(r) for p in wanted)]
-        together = [p for p in wanted if any(Name(p) in nodes(r) for r, _ in rows)]
-        rows = rows[: len(together)]
-        if rows and len(rows) == len(together):
-            wanted = [p for p in wanted if p not in together]
-            values = self._solved_by_value([r for r, _ in rows], together)
-            self.by_value = dict(zip(together, values, strict=False))
-            unread = [r for r, _ in rows]
-            while unread:
-                names = {n.name for e in unread for n in nodes(e) if isinstance(n, Name)} - self.solved_with
-                self.solved_with |= names
-                unread = [e for n in names if (e := self.constants.get(n)) is not None]
-            if not values:
-                self._note_left(*rows[0], ", ".join(together))
-        for rest, equation in left:
-            if (rest, equation) not in rows and not self._vanishes(rest):
-                self._note_left(rest, equation, None)
-        for name in wanted:
+        solving = Solving(self.reader, self.constants)
+        left, missing = solving.solve(self.left_over, [*self.rest.multipliers, *self.rest.solve])
+        self.definitions += solving.definitions
+        self.by_value = solving.by_value
+        self.used |= solving.used
+        self.found = tuple(solving.found)
+        if not self.reader.problems:
+            self.check_domain()
+        for made in () if self.reader.problems else solving.definitions:
+            value = self.constants.here(made.expression)
+            if value is not None and not value.is_finite():
+                message = f"'{format_expression(made.expression)}' has no value at the operating point"
+                self.reader.note("SF224", message, made.span, "correct the values of parameters")
+        numbers = {p.name: self.constants.known[p.name] for p in self.rest.declared}
+        for each in left:
+            if self.constants.vanishes(each.residual):
+                continue
+            if self.constants.vanishes(each.residual, numbers):
+                self.used |= self.constants.behind(each.residual) & {*numbers}
+            else:
+                self._note_left(each)
+        for name in missing:
             if name in self.rest.multipliers:
                 self.definitions.append(Definition(name, number(0), "", self.rest.span))
                 continue
@@ -434,143 +444,34 @@ class _AboutRest:
             if rates:  # r' = w - p gives the rate of r, not w
                 hint = f'write "{rates[0]}" = "0" if \'{rates[0][:-1]}\' is at rest too, or {hint}'
             self.reader.note("SF407", message, self.rest.span, hint)
+        for part, sign in self.decided.items():
+            value = self.constants.here(part)
+            if value is not None and value.is_finite() and (value > 0) - (value < 0) != sign:
+                message = f"'{format_expression(part)}' is taken for {'positive' if sign > 0 else 'negative'}"
+                hint = "declare values with the signs that they have at rest"
+                self.reader.note("SF407", f"{message} at rest, and is not", part.span or self.rest.span, hint)
 
-    def _note_left(self, rest: Expression, equation: Equation, unknown: str | None) -> None:
-        size = ""
-        with precision(BITS), suppress(KeyError):  # of a parameter without a value
-            value = self._value(rest, dict(self.known), None)
-            if value.is_finite():
-                size = f" ({'0 for these values alone' if value.contains(0) else value.str(3, radius=False)})"
-        message = f"this does not hold at the operating point: {format_expression(rest)} is left{size}"
+    def check_constraints(self, equations: Mapping[str, Equation]) -> None:
+        """Note constraints with dependent gradients at rest: what is linear of them says too little."""
+        by_name = dict(zip(equations, self.slopes, strict=True))
+        rows = [
+            [by_name[name].get(q, number(0)) for q in self.rest.coordinates] for name in self.rest.constraints
+        ]
+        if rows and self.constants.are_dependent(rows):
+            message = (
+                "a singular configuration: gradients of the constraints are dependent at the operating point"
+            )
+            hint = "choose another point; leave out a constraint that follows from the others everywhere"
+            self.reader.note("SF407", message, equations[self.rest.constraints[0]].span, hint)
+
+    def _note_left(self, left: Left) -> None:
+        size, value = "", self.constants.here(left.residual)
+        if value is not None and value.is_finite():
+            size = f" ({'0 for these values alone' if value.contains(0) else value.str(3, radius=False)})"
+        shown = format_expression(left.residual)
+        message = f"this does not hold at the operating point: {shown} is left{size}"
         hint = "correct [operating_point], or name what follows from it: solve = [...]"
-        if unknown is not None:
-            message = f"'{unknown}' is not found: {format_expression(rest)} has no root next to its value"
-            hint = f"give '{unknown}' a value close to the one at rest, and all other parameters theirs"
-            if not self.known.keys() >= {*unknown.split(", ")}:  # made names of unknowns cannot be given one
-                hint = f"declare parameters with values close to those at rest, {EXAMPLE}"
-        self.reader.note("SF407", message, equation.span, hint)
-
-    def _solved_by_value(self, rows: list[Expression], unknowns: list[str]) -> list[Fraction]:
-        """Return the roots next to parameters' values, proved by Newton's operator, to forty digits."""
-        slopes = [derivative(rest, Name(p)) for rest in rows for p in unknowns]
-        n = len(unknowns)
-        with precision(BITS):
-            try:
-
-                def step(box: list[arb]) -> list[arb]:
-                    """Return what Newton's operator subtracts from the middle of a box."""
-                    boxes = self.known | dict(zip(unknowns, box, strict=True))
-                    middles = boxes | {p: boxes[p].mid() for p in unknowns}
-                    matrix = arb_mat(n, n, [self._value(e, dict(boxes), None) for e in slopes])
-                    left = arb_mat(n, 1, [self._value(e, dict(middles), None) for e in rows])
-                    return list(matrix.solve(left).entries())
-
-                x = [self.known[p].mid() for p in unknowns]
-                for _ in range(STEPS):
-                    x = [(a - b).mid() for a, b in zip(x, step(x), strict=True)]
-                reach = [(abs(a) * arb(10) ** -DIGITS).mid() for a in x]
-                steps = step([arb(a, r) for a, r in zip(x, reach, strict=True)])
-                if not all(map(stays_inside, steps, reach)):
-                    return []
-            except (KeyError, ZeroDivisionError):
-                return []
-            return [Fraction(a.str(DIGITS, radius=False)) for a in x]
-
-    def _vanishes(self, residual: Expression) -> bool:
-        if is_number(residual, 0):
-            return True
-        random, agreeing = Random(1), 0
-        for _ in range(TRIALS):
-            with precision(BITS):
-                value = self._value(residual, {}, random)
-                if value.is_finite() and not value.contains(0):
-                    return False
-                agreeing += bool(value.is_finite())
-            if agreeing == AGREEING:
-                return True
-        return False
-
-    def _value(self, expression: Expression, known: dict[str, arb], random: Random | None) -> arb:
-        """Return an expression's value, where names without one have random ones; else KeyError."""
-
-        def named(name: str) -> arb:
-            if name not in known:
-                defined = self.constants[name]
-                if defined is None and random is None:
-                    raise KeyError(name)
-                sign = 1 if random is None or name not in self.signed else random.choice((-1, 1))
-                known[name] = (
-                    sign * arb(random.randrange(1, 1 << 20)) / (1 << random.randrange(18, 26))
-                    if defined is None and random
-                    else self._value(lower(defined or number(0)), known, random)
-                )
-            return known[name]
-
-        def called(call: Call, inner: arb) -> arb:
-            return abs(inner) if call.name == "abs" else getattr(inner, call.name.replace("sign", "sgn"))()
-
-        return fold(
-            expression,
-            number=lambda n: arb(n.numerator) / n.denominator,
-            name=lambda name: arb.pi() if name == "pi" else named(name),
-            power=lambda base, exponent: base ** self._value(exponent, known, random),
-            call=called,
-        )
-
-
-def _solved(residual: Expression, unknown: str, wanted: Collection[str]) -> Expression | None:
-    """Return the value for which a residual vanishes, if that is linear in it or in its square."""
-    residual = _over_one_line(residual, unknown)
-    slope = simplified(derivative(residual, Name(unknown)), {})
-    if is_number(slope, 0):
-        return None
-    second = simplified(derivative(slope, Name(unknown)), {})
-    below = slope if is_number(second, 0) else second
-    if any(Name(p) in nodes(below) for p in wanted):
-        return None
-    constant = simplified(residual, {unknown: number(0)})
-    if below is slope:
-        return negative(_over(constant, slope))
-    if not is_number(simplified(slope, {unknown: number(0)}), 0):
-        return None
-    return Call("sqrt", negative(_over(product_of([number(2), constant]), second)))
-
-
-def _without_factor(residual: Expression, wanted: Collection[str]) -> Expression:
-    """Return what else vanishes, of a product with a wanted name and another: ``X_0*(mu_0 - D)``."""
-    for p in wanted:
-        slope = simplified(derivative(residual, Name(p)), {})
-        other = {Name(n) for n in wanted} & {*nodes(slope)}
-        if other and Name(p) not in other and is_number(simplified(residual, {p: number(0)}), 0):
-            return slope
-    return residual
-
-
-def _over_one_line(residual: Expression, unknown: str) -> Expression:
-    """Return a residual times the denominators of its terms that have an unknown."""
-    terms = residual.terms if isinstance(residual, Sum) else (residual,)
-    for term in terms:
-        part = term.operand if isinstance(term, Negative) else term
-        if isinstance(part, Quotient) and Name(unknown) in nodes(part.denominator):
-            others = [product_of([t, part.denominator]) for t in terms if t is not term]
-            above = part.numerator if part is term else negative(part.numerator)
-            return _over_one_line(sum_of([*others, above]), unknown)
-    return residual
-
-
-def _over(above: Expression, below: Expression) -> Expression:
-    """Return a quotient with one line, and without a number that both parts have."""
-    if isinstance(below, Negative):
-        return negative(_over(above, below.operand))
-    if isinstance(below, Sum) and isinstance(below.terms[0], Negative):
-        return negative(_over(above, sum_of(map(negative, below.terms))))
-    if isinstance(below, Quotient):
-        above, below = product_of([above, below.denominator]), below.numerator
-    factor = next(
-        (n.value for n in nodes(below)[: 1 + isinstance(below, Product)] if isinstance(n, Number)), 1
-    )
-    both = ((product_of([number(1 / Fraction(factor)), each])) for each in (above, below))
-    return quotient(*both)
+        self.reader.note("SF407", message, left.equation.span, hint)
 
 
 def _order_of_s(factor: Expression) -> int:

@@ -157,8 +157,8 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     signals += read_equations(reader, sections["equations"], taken, {x.name for x in signals})
     draft = Draft(declared, inherited, definitions, (), elements, inputs, blocks, signals, outputs, ())
     draft, cycles = _with_turns_read(reader, draft)
-    draft, point = _with_motion(reader, sections, draft, taken, cycles)
-    taken |= {d.name for d in draft.definitions}
+    draft, point = _with_motion(reader, sections, draft, taken, cycles, origin.loads.settings)
+    taken |= {p.name for p in draft.declared} | {d.name for d in draft.definitions}
     loads = {x.name for x in draft.signals} | {d.input.name for d in inputs}
     fields = with_brackets_opened(
         reader,
@@ -261,13 +261,14 @@ def _with_motion(
     draft: Draft,
     taken: Collection[str],
     cycles: AsWritten,
+    settings: Mapping[str, Setting],
 ) -> tuple[Draft, OperatingPoint | None]:
     """Return a draft whose equations of motion are linear, and the point at which they are."""
     if not any(sections[name] for name in ("equations", "operating_point", "energy")):
         return draft, None
     from symflex.model.energy import with_motion  # four modules that few models need
 
-    return with_motion(reader, sections, draft, taken, cycles)
+    return with_motion(reader, sections, draft, taken, cycles, settings)
 
 
 def _check_count(reader: Reader, spec: Spec, outputs: Sequence[Output], inputs: Sequence[DraftInput]) -> None:

@@ -106,7 +106,9 @@ def check_units(
             system.equate(Variable("signal", signal.name), signal.expression)
     for output in draft.outputs:
         system.measure(output.expression)
-    has_units = any((placed, dimensions, *quantities.values()))
+    # Angles and shares are numbers.
+    measured = (q for q in quantities.values() if q is not None and q.dimension != DIMENSIONLESS)
+    has_units = any((placed, dimensions, *measured))
     system.settle([p.name for p in draft.declared if p.quantity] + [*definitions] if has_units else ())
     if system.problems and infers and not system.lacks_an_s:
         # What has no unit may have been meant to have several.

@@ -8,14 +8,21 @@ Input: a resolved model. Output: values at rest, linear equations, matrices of m
 
 from __future__ import annotations
 
+from itertools import chain, repeat
 from textwrap import wrap
 from typing import TYPE_CHECKING
+
+from flint import arb
 
 from symflex.expressions import Equation, format_expression
 
 if TYPE_CHECKING:
     from symflex.model import Model
+    from symflex.model.model import FoundValue
 
+SOLVED = "solved at rest: "
+DIGITS = 6  # of values in a terminal
+JSON_DIGITS = 15
 MATRICES = ("mass", "damping", "stiffness")
 WIDTH = 80  # columns of a terminal
 
@@ -61,6 +68,51 @@ def motion_text(model: Model) -> str:
             for i, row in enumerate(rows, 1):
                 lines += [f"    ({i}, {j})  {entry}" for j, entry in enumerate(row, 1) if entry != "0"]
     return "\n".join(lines)
+
+
+def solved_json(model: Model, digits: int = JSON_DIGITS) -> dict[str, object]:
+    """Return the values that were solved for, each beside the declared one; nothing without any."""
+    solved = _solved(model)
+    if not solved:
+        return {}
+    from symflex.roots.root import real_json  # imports numpy
+
+    entries = [
+        {"name": v.name, **(real_json(v.ball, digits) or {}), "unit": unit, "declared": v.declared_text}
+        for v, unit in solved
+    ]
+    return {"solved_at_rest": entries}
+
+
+def solved_text(model: Model, digits: int = DIGITS, above: str | None = None) -> list[str]:
+    """Return the same as lines for a terminal; a radius bounds the distance from the printed value."""
+    shown = [f"{name} = {value}" for name, value in solved_values(model, digits)]
+    heads = chain([SOLVED], repeat(" " * len(SOLVED)))
+    lines = [f"  {head}{line}" for head, line in zip(heads, shown, strict=False)]
+    return lines if above is None or not lines else [above, *lines]
+
+
+def solved_values(model: Model, digits: int = DIGITS) -> list[tuple[str, str]]:
+    """Return names and values that were solved for: ``0.516996 um (radius 6.0e-9 um, declared 0.1 um)``."""
+    shown = []
+    for v, unit in _solved(model):
+        from symflex.roots.root import decimals  # imports numpy
+
+        printed = decimals(v.ball, arb(0), digits)
+        parts = (("", printed.re), ("radius ", printed.radius), ("declared ", v.declared_text))
+        value, *more = (f"{word}{text} {unit}".rstrip() for word, text in parts if text is not None)
+        shown.append((v.name, f"{value} ({', '.join(more)})"))
+    return shown
+
+
+def _solved(model: Model) -> list[tuple[FoundValue, str]]:
+    """Return the values that were solved for with their units; that of an input has its unit."""
+    point = model.operating_point
+    if point is None:
+        return []
+    units = {format_expression(value): name for name, value in point.values}
+    own = {source.name: source.unit for source in model.inputs}
+    return [(v, v.unit or own.get(units.get(v.name, ""), "")) for v in point.found]
 
 
 def _linear(model: Model) -> list[str]:

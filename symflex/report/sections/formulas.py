@@ -32,6 +32,7 @@ from symflex.print.mathml import (
     ratio_mathml,
     transfer_function_mathml,
 )
+from symflex.print.motion import solved_values
 from symflex.report.document import (
     Badge,
     Block,
@@ -105,6 +106,10 @@ def motion_section(study: Study) -> ChapterPart | None:
         still = name.rstrip("'")
         rest += [", " if rest else "At rest, ", *shown(Name(still), value, "′" * (len(name) - len(still)))]
     blocks = [text(*rest, ". The names below stand for deviations from rest:")] if rest else []
+    solved = list[Run]()
+    for name, shown_value in solved_values(study.model):
+        solved += [", " if solved else "Solved at rest: ", labelled(Name(name), labels), f" = {shown_value}"]
+    blocks = [text(*solved, "."), *blocks] if solved else blocks
     return ChapterPart("Linear equations", (*blocks, *(text(*shown(e.left, e.right)) for e in point.linear)))
 
 
