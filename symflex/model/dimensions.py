@@ -396,7 +396,7 @@ class DimensionSystem:
         if not is_free and reduced.dimension != DIMENSIONLESS:
             message = f"the argument of {name} is in '{reduced.dimension}'; it must be a pure number"
             self._note("SF203", message, argument.span, f"divide it by a value in '{reduced.dimension}'")
-        return Measure()
+        return Measure(open=reduced.open and not self._infers)
 
     def _sum(
         self, expression: Expression, terms: tuple[Expression, ...], *, is_equation: bool = False
@@ -405,8 +405,10 @@ class DimensionSystem:
         if not measures:
             return Measure(open=True)
         closed = [(t, self._reduce(m)) for t, m in measures if not m.open]
+        if all(_is_constant(t) for t, _ in closed) and len(closed) < len(measures):
+            closed = []  # beside what fits any unit, so does a number
         if not closed:
-            return measures[0][1]
+            return next(m for _, m in measures if m.open)
         # What is known first: beside it, an unknown of yet unknown unit is not what disagrees.
         first_term, first = min(closed, key=lambda m: (m[1].is_gain, bool(m[1].unknowns), m[1].written))
         others = [m for _, m in closed]

@@ -113,7 +113,9 @@ def _loose_nodes(model: Model, used: Mapping[str, set[str]]) -> Iterator[Diagnos
         are_branches = all(
             not isinstance(use.element, LineElement) and [len(r) for _, r in use.nodes] == [2] for use in uses
         )
-        if len(uses) > 1 and not (are_branches and len(joined) == 1):
+        ends = [r for use in uses for _, references in use.nodes for r in references if r.node == node.name]
+        # What two ends of one element meet at, two windings in series for instance, is not loose either.
+        if len(ends) > 1 and not (are_branches and len(joined) <= 1):
             continue
         others = [name for name in (*everything, "ground") if name != node.name and name not in joined]
         close = nearest(node.name, others)

@@ -52,6 +52,14 @@ def test_a_misspelt_ground_is_a_node_that_one_element_touches_or_several_leave_l
     assert told(elements=f"{spring}\n{damper}") == [("SF650", "gruond")]
 
 
+def test_a_node_at_which_two_ends_of_one_element_meet_is_not_loose():
+    # Two windings in series have the inductance L_1 + L_2 + 2*M, so their node carries a current.
+    for ends, is_loose in (('"a", "q", "q", "ground"', False), ('"a", "ground", "q", "a"', True)):
+        coils = f'coils = {{ type = "coupled_inductors", terminals = [{ends}], L_1 = 1, L_2 = 1, M = 0 }}'
+        found = told(elements=coils, inputs='u = { voltage = "a" }')
+        assert (("SF650", "q") in found) == is_loose, ends
+
+
 def test_a_node_that_is_read_is_not_loose():
     spring = 'two = { type = "spring", between = ["x", "y"], k = "k" }'
     assert "SF650" not in {code for code, _ in told(elements=spring, outputs='Y = "y"')}
