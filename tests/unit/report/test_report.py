@@ -188,7 +188,9 @@ def test_the_facts_in_the_data_are_those_of_two_masses(small):
 def test_a_nonlinear_model_has_its_linear_equations_before_what_follows_from_them(tmp_path):
     path = tmp_path / "pendulum.toml"
     path.write_text(PENDULUM)
-    rest, equation = motion_section(Study.of(path, "pendulum")).blocks
+    solved, rest, equation = motion_section(Study.of(path, "pendulum")).blocks
+    said = "".join(r if isinstance(r, str) else r.latex for r in solved.runs)
+    assert said.startswith(r"Solved at rest: \tau_{0} = 1.50000 N*m (radius ")  # 3 sin 30 deg
     said = "".join(r if isinstance(r, str) else r.latex for r in rest.runs)
     assert said == r"At rest, \theta = q, \tau = \tau_{0}. The names below stand for deviations from rest:"
     assert equation.runs[0].latex == r"J s^{2} \theta + w \, \cos(q) \, \theta"
