@@ -21,13 +21,21 @@ from symflex.algebra import (
     Radicals,
     Ring,
     common_denominator,
+    least_common_multiple,
     random_point,
     residue,
 )
 from symflex.budget import spend
 from symflex.equations.against_text import error_of
 from symflex.equations.equations import ConstantFunction, Continuum, Equations, OutputRow, radicals_of
-from symflex.equations.evaluate import Dynamics, ExactEvaluator, Opener, read_block, without_squares
+from symflex.equations.evaluate import (
+    Dynamics,
+    ExactEvaluator,
+    Opener,
+    read_block,
+    shared_by_sides,
+    without_squares,
+)
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
 from symflex.expressions import (
     Call,
@@ -373,7 +381,9 @@ class _Assembly:
             replace(evaluator, scope=evaluator.scope.within(solution.field.unknowns)),
         )
         for i, equation in enumerate(field.equations):
-            hidden = inside.read_linear(_difference(equation)).hidden
+            reading = inside.read_linear(_difference(equation))
+            shared = (inside.in_s(shared_by_sides(c)) for c in reading.value.coefficients)
+            hidden = least_common_multiple(reading.hidden, shared)
             self._hide(Variable("field", field.name, f"equation_{i + 1}"), hidden)
         for i, condition in enumerate(field.conditions):
             about = Variable("field", field.name, f"condition {i + 1}")
@@ -535,7 +545,10 @@ class _Assembly:
                 self.problems.extend(error.diagnostics)
                 return None
             constants[name] = reading.value
-            self._hide(Variable("value", use.name, name), reading.hidden)
+            hidden = reading.hidden
+            if isinstance(use.element, LineElement):
+                hidden = hidden * evaluator.in_s(shared_by_sides(reading.value))
+            self._hide(Variable("value", use.name, name), hidden)
         terminals = {
             port: tuple(self._terminal(r, dict(use.domains)[port], nodes) for r in references)
             for port, references in use.nodes

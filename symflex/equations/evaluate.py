@@ -18,7 +18,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from math import isqrt, prod
-from typing import Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 from symflex.algebra import (
     LAPLACE,
@@ -31,6 +31,7 @@ from symflex.algebra import (
     degree_in,
     least_common_multiple,
     residue,
+    terms_of,
 )
 from symflex.equations.against_text import compare, number_of_form
 from symflex.errors import BudgetError, Diagnostic, ModelError, Span
@@ -56,6 +57,9 @@ from symflex.library.elements import LinearForm, Variable
 from symflex.model import ModelScope, PlacedBlock
 from symflex.model.linearity import factored_of
 from symflex.model.model import RootOfS
+
+if TYPE_CHECKING:
+    from flint import fmpz_mpoly
 
 OPENED_PARTS = 1_000
 OPENED_DEPTH = 200
@@ -433,6 +437,42 @@ def exact_root(value: Fraction) -> Fraction | None:
     top, bottom = isqrt(value.numerator), isqrt(value.denominator)
     exact = top * top == value.numerator and bottom * bottom == value.denominator
     return Fraction(top, bottom) if exact else None
+
+
+def shared_by_sides(value: Factored) -> Factored:
+    """Return what numerator and denominator have in common, which sums leave in both.
+
+    >>> ring = Ring(("s",))
+    >>> s = Factored.generator(ring, "s")
+    >>> str(shared_by_sides(s / (s - 1) - 3 / ((s - 1) * (s + 2))))
+    '(s - 1)'
+    """
+    if value.ring.is_sparse:  # its polynomials have no greatest common divisor
+        used = value.ring.used_in(f for f, _ in value.factors)
+        dense = Ring(tuple(name for name in value.ring.names if name in used))
+        return _carried(shared_by_sides(_carried(value, dense)), value.ring)
+    above, below, shared = value.numerator(), value.denominator(), Factored.number(value.ring, 1)
+    for own, exponent in below.factors:
+        left = own
+        for factor, power in above.factors:
+            common = left.gcd(factor)
+            if not common.is_constant():
+                shared = shared * Factored.polynomial(value.ring, common) ** min(exponent, power)
+                left = left / common
+    return shared
+
+
+def _carried(value: Factored, ring: Ring) -> Factored:
+    """Return a value over another ring that has the names in it."""
+
+    def image(factor: fmpz_mpoly) -> Factored:
+        total = ring.constant(0)
+        for monomial, coefficient in terms_of(factor):
+            powers = (ring.generator(value.ring.names[i]) ** e for i, e in monomial)
+            total += prod(powers, start=ring.constant(int(coefficient)))
+        return Factored.polynomial(ring, total)
+
+    return value.map_factors(ring, image)
 
 
 def read_block(block: PlacedBlock, evaluator: ExactEvaluator) -> Dynamics[Factored]:
