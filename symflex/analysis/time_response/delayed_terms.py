@@ -1,11 +1,14 @@
 """Functions of s whose only exponentials are delays: as sums of polynomials times exp(-s T), exactly.
 
 Input: a bound transfer function with pure delays, and rods, shafts and strings that lose nothing.
-Output: numerator and denominator as :class:`DelayedSum`.
+Output: numerator and denominator as :class:`DelayedQuotient`.
 
 A wave of such a rod has the wavenumber ``s/c``, so it is a delay too:
 
     2 cosh(s l/c)    =    exp(s l/c) (1 + exp(-2 s l/c))
+
+Where all moves along x, as a belt does with speed v, waves take ``l/(c + v)`` there and ``l/(c - v)`` back.
+They have ``exp(-(shift +- gamma) l)``, with a ``shift`` proportional to s; along x it is negative.
 
 Delays are compared exactly. Each is a rational multiple of a square root of a rational number, such as l/c of
 ``sqrt(rho/E)``; roots whose ratio is irrational are independent over the rational numbers (Besicovitch 1940).
@@ -23,13 +26,16 @@ from flint import acb, arb, arb_poly, fmpz_mpoly
 
 from symflex.algebra import Dispersion, Factored, Ring, degree_in
 from symflex.algebra.exponential_sum import Argument, Exponent, arguments_of, exponential_sum
-from symflex.balls import at_centre, ball
+from symflex.analysis.time_response.effort import EFFORT
+from symflex.balls import at_centre, ball, precision
 from symflex.roots.problem import PolynomialInS, RealConstant
 from symflex.transfer import BoundTransferFunction
 
 Delay = tuple[tuple[int, Fraction], ...]  # independent durations, ascending, times what is not zero
 Amplitude = dict[tuple[int, ...], Fraction]  # per exponents of s and of the constants, a number
 NO_DELAY: Delay = ()
+NO_FORMULA = "some wavenumbers have no formula"  # why a function is not read as delays or fronts
+TOO_MANY = "it multiplies out to too many exponentials"
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,26 +83,32 @@ class DelayedQuotient:
 
 def delayed_quotient(bound: BoundTransferFunction) -> DelayedQuotient | None:
     """Return a function as a quotient of sums of delays; None if it contains anything else, or too much."""
+    read = read_delays(bound)
+    return read if isinstance(read, DelayedQuotient) else None
+
+
+def read_delays(bound: BoundTransferFunction) -> DelayedQuotient | str:
+    """Return a function as a quotient of sums of delays, or why it is none."""
     arguments = arguments_of(bound.kernels)
     if arguments is None:
-        return None
+        return NO_FORMULA
     law_of = {kernel.wavenumber: kernel.dispersion for kernel in bound.kernels.kernels if kernel.wavenumber}
     slowness: dict[str, Factored] = {}
     for name, law in law_of.items():
         squared = _squared_slowness(law)
         if squared is None:
-            return None
+            return "some waves weaken on the way" if _weakens(law) else "some waves change shape"
         slowness[name] = squared
     reader = DelayReader.of(bound, arguments, slowness)
-    if reader is None:
-        return None
+    if isinstance(reader, str):
+        return reader
     one = {NO_DELAY: {(0,) * (1 + len(reader.durations.names)): bound.ratio.unit}}
     above: Mapping[Delay, Amplitude] = one
     below: Mapping[Delay, Amplitude] = {NO_DELAY: {(0,) * (1 + len(reader.durations.names)): Fraction(1)}}
     for factor, exponent in bound.ratio.factors:
         terms = reader.read(factor)
         if terms is None:
-            return None
+            return TOO_MANY
         for _ in range(abs(exponent)):
             above, below = (
                 (_product(above, terms), below) if exponent > 0 else (above, _product(below, terms))
@@ -119,8 +131,8 @@ class DelayReader:
     @classmethod
     def of(
         cls, bound: BoundTransferFunction, arguments: tuple[Argument, ...], slowness: Mapping[str, Factored]
-    ) -> DelayReader | None:
-        """Return the reader of a function; None if an argument is no delay."""
+    ) -> DelayReader | str:
+        """Return the reader of a function, or why an argument is no delay."""
         ring = bound.ratio.ring
 
         def real_value(value: Factored) -> arb:
@@ -143,14 +155,21 @@ class DelayReader:
                 square = slowness[argument.wavenumber] * argument.length**2
                 sign = -1
             else:
-                linear = polynomial_in_s(argument.rate, 1)
+                linear = decay_and_rate(argument.rate)
                 if linear is None:
-                    return None
+                    return "what is delayed changes its form"
                 decay, rate = linear
-                square = (rate * argument.length) ** 2
-                sign = 1
                 if not decay.is_zero:
                     decays[number] = partial(decay_of, decay * argument.length)
+                delay = rate * argument.length
+                if delay.is_zero:
+                    delays.append((0, Fraction(0)))
+                    continue
+                with precision(EFFORT.tie_bits):
+                    seconds = real_value(delay)
+                if seconds.contains(0):
+                    return "it is not known which way some waves go"
+                square, sign = delay**2, 1 if seconds > 0 else -1
             exact = square.unit if square.is_constant else None
             found = next(((i, r) for i, q in enumerate(squares) if (r := _ratio(exact, q)) is not None), None)
             if found is None:
@@ -169,6 +188,10 @@ class DelayReader:
         names += [f"decay_{number}" for number in decays]
         known_constants = Durations(tuple(durations), tuple(names), (*constants, *decays.values()))
         return cls(bound, arguments, tuple(delays), places, lossy, waves, known_constants)
+
+    def decay(self, number: int) -> arb:
+        """Return what an argument's exponential is multiplied by besides its delay."""
+        return self.durations.constants[self.decays[number] - 1]()
 
     def delay_of(self, exponent: Exponent) -> Delay:
         """Return what an exponential is late by."""
@@ -198,10 +221,26 @@ class DelayReader:
 
 def _squared_slowness(law: Dispersion) -> Factored | None:
     """Return 1/c^2 of a law ``gamma^2 = s^2/c^2``, None of any other."""
-    if law.kind != "wave" or not law.shift.is_zero or not all(c.is_zero for c in law.characteristic[1:]):
+    if law.kind != "wave" or not all(c.is_zero for c in law.characteristic[1:]):
         return None
     powers = polynomial_in_s(-law.characteristic[0], 2)
     return powers[2] if powers is not None and powers[0].is_zero and powers[1].is_zero else None
+
+
+def _weakens(law: Dispersion) -> bool:
+    """Tell whether ``gamma = s/c + a``, as in a line without distortion: waves keep their shape, not size."""
+    if law.kind != "wave":
+        return False
+    powers = polynomial_in_s(-law.characteristic[0], 2)
+    return powers is not None and (powers[1] ** 2 - powers[0] * powers[2] * 4).is_zero
+
+
+def decay_and_rate(shift: Factored) -> tuple[Factored, Factored] | None:
+    """Return a and b of ``a + b s``; None of anything else."""
+    for degree in (1, 0):
+        if (powers := polynomial_in_s(shift, degree)) is not None:
+            return powers[0], powers[1] if degree else Factored.number(shift.ring, 0)
+    return None
 
 
 def polynomial_in_s(value: Factored, degree: int) -> list[Factored] | None:

@@ -217,7 +217,7 @@ def _answer(asked: Asked) -> Sampled:
 
 def _by_echoes(asked: Asked) -> Plan | Refused:
     if asked.quotient is None:
-        return Refused("some waves change shape")
+        return Refused(asked.why_no_quotient)
     return partial(_closely, asked, partial(echoed, asked.quotient, asked.integrations))
 
 
@@ -237,8 +237,8 @@ def _by_wave_echoes(asked: Asked) -> Plan | Refused:
     if asked.bound.is_rational or asked.quotient is not None:
         return Refused()
     waves = wave_quotient(asked.bound)
-    if waves is None:
-        return Refused("some waves have no front, or two speeds")
+    if isinstance(waves, str):
+        return Refused(waves)
     return partial(_closely, asked, partial(waves.echoed, asked.integrations))
 
 

@@ -9,7 +9,7 @@ from typing import Final
 
 from flint import arb
 
-from symflex.analysis.time_response.delayed_terms import DelayedQuotient, delayed_quotient
+from symflex.analysis.time_response.delayed_terms import DelayedQuotient, read_delays
 from symflex.analysis.time_response.partial_fractions import ExponentialTerm
 from symflex.analysis.time_response.sample_times import SampleTimes
 from symflex.transfer import BoundTransferFunction
@@ -101,7 +101,16 @@ class Asked:
     @cached_property
     def quotient(self) -> DelayedQuotient | None:
         """The function as a quotient of delays; None if it contains anything else."""
-        return None if self.bound.is_rational else delayed_quotient(self.bound)
+        return self._delays if isinstance(self._delays, DelayedQuotient) else None
+
+    @property
+    def why_no_quotient(self) -> str:
+        """Why there is no such quotient; empty where there is, and for a function without waves."""
+        return self._delays if isinstance(self._delays, str) else ""
+
+    @cached_property
+    def _delays(self) -> DelayedQuotient | str:
+        return "" if self.bound.is_rational else read_delays(self.bound)
 
 
 class Gathered:

@@ -27,7 +27,15 @@ from flint import acb, acb_series, arb, arb_poly, arb_series
 
 from symflex.algebra import Dispersion, Factored, degree_in
 from symflex.algebra.exponential_sum import ExponentialSum, arguments_of
-from symflex.analysis.time_response.delayed_terms import NO_DELAY, Delay, DelayReader, later, sum_of
+from symflex.analysis.time_response.delayed_terms import (
+    NO_DELAY,
+    NO_FORMULA,
+    TOO_MANY,
+    Delay,
+    DelayReader,
+    later,
+    sum_of,
+)
 from symflex.analysis.time_response.echoes import TooManyEchoesError, arriving, check_order, earliest
 from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.sample_times import SampleTimes
@@ -37,6 +45,8 @@ from symflex.budget import spend
 from symflex.roots.functions.exponential_values import ExponentialValues, exponential_sums
 from symflex.roots.problem import polynomial_in_s
 from symflex.transfer import BoundTransferFunction
+
+NO_FRONT = "some waves have no front"  # why a function is not read as fronts
 
 
 @dataclass(frozen=True, eq=False)
@@ -252,6 +262,8 @@ class _AtInfinity:
                 amplitude = amplitude + term
             for i, a, _ in exponent:
                 amplitude = amplitude * (self.spread[i] * a).exp()
+                if i in self.waves.reader.decays:
+                    amplitude = amplitude * self.waves.reader.decay(i) ** a
             delay = self.waves.reader.delay_of(exponent)
             amplitudes[delay] = amplitudes[delay] + amplitude if delay in amplitudes else amplitude
         return amplitudes
@@ -303,29 +315,31 @@ def _over(bound: BoundTransferFunction, value: Factored, power: int, x: Value) -
     return total * x**left if left else total
 
 
-def wave_quotient(bound: BoundTransferFunction) -> WaveQuotient | None:
-    """Return a function as waves with speeds, None if it contains anything else."""
+def wave_quotient(bound: BoundTransferFunction) -> WaveQuotient | str:
+    """Return a function as waves with speeds, or why it is none."""
     arguments = arguments_of(bound.kernels)
     if arguments is None:
-        return None
+        return NO_FORMULA
     slowness: dict[str, Factored] = {}
     for law in bound.kernels.dispersions:
         square = _squared_slowness(bound, law)
         if square is None and law.kind != "exponential":
-            return None
+            return "some waves have two wavenumbers" if law.kind == "pair" else NO_FRONT
         slowness |= dict.fromkeys(law.wavenumbers, square) if square is not None else {}
     reader = DelayReader.of(bound, arguments, slowness)
-    if reader is None or reader.decays:
-        return None
+    if isinstance(reader, str):
+        return reader
     summed = exponential_sums(bound.ratio, bound.kernels)
-    if summed is None or any(b for terms, _ in summed[1] for e in terms.terms for _, _, b in e):
-        return None
+    if summed is None:
+        return TOO_MANY
+    if any(b for terms, _ in summed[1] for e in terms.terms for _, _, b in e):
+        return NO_FRONT
     return WaveQuotient(bound, reader, summed[1])
 
 
 def _squared_slowness(bound: BoundTransferFunction, law: Dispersion) -> Factored | None:
     """Return 1/c^2 of the fronts of a law of one wave, None of any other, or if there is none."""
-    if law.kind != "wave" or not law.shift.is_zero:
+    if law.kind != "wave":
         return None
     lead = _at_fronts(bound, law.characteristic[0], law.order)
     return None if lead is None or lead.is_zero else -lead
