@@ -182,9 +182,11 @@ def linearised(
     made = {name: point.linear(equation) for name, equation in equations.items()}
     if None not in made.values():
         point.check_names(rest)
-        point.check_at_rest()
+        point.check_constraints(equations, is_solved=False)
         if not reader.problems:
-            point.check_constraints(equations)
+            point.check_at_rest()
+        if not reader.problems:
+            point.check_constraints(equations, is_solved=True)
     if reader.problems:
         raise SpecError(*reader.problems)
     kept = tuple(replace(x, expression=made.get(x.name) or x.expression) for x in signals)
@@ -451,13 +453,14 @@ class _AboutRest:
                 hint = "declare values with the signs that they have at rest"
                 self.reader.note("SF407", f"{message} at rest, and is not", part.span or self.rest.span, hint)
 
-    def check_constraints(self, equations: Mapping[str, Equation]) -> None:
+    def check_constraints(self, equations: Mapping[str, Equation], *, is_solved: bool) -> None:
         """Note constraints with dependent gradients at rest: what is linear of them says too little."""
         by_name = dict(zip(equations, self.slopes, strict=True))
         rows = [
             [by_name[name].get(q, number(0)) for q in self.rest.coordinates] for name in self.rest.constraints
         ]
-        if rows and self.constants.are_dependent(rows):
+        depends = any(Name(p) in nodes(e) for p in self.rest.solve for row in rows for e in row)
+        if rows and depends is is_solved and self.constants.are_dependent(rows):
             message = (
                 "a singular configuration: gradients of the constraints are dependent at the operating point"
             )

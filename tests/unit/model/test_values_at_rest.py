@@ -254,6 +254,29 @@ def test_a_singular_configuration_is_called_one():
     loads(FOUR_BAR.replace("ANGLE", "30 deg"))
 
 
+@pytest.mark.parametrize(
+    ("coordinates", "constraints", "rest"),
+    [
+        (["x", "y"], ["x^2 + y^2 = 0"], {"y": 0}),  # a circle without a radius
+        (["x", "y"], ["x^2 + y^2 = r^2", "2*x^2 + 2*y^2 = 2*r^2"], {"y": "-r"}),  # twice the same
+        (
+            ["x", "a", "b"],
+            ["x = r*cos(a) + r*cos(b)", "sin(a) = sin(b)"],
+            {"a": "pi/2", "b": "pi/2"},
+        ),  # a crank
+    ],
+)
+def test_dependent_constraints_are_called_singular_whatever_else_is_wrong(coordinates, constraints, rest):
+    lines = ["symflex = 1", "parameters = { m = 1, g = 9.81, r = 2 }", "inputs = { F = {} }"]
+    lines += ['outputs = { X = "x" }', "[energy]", f"coordinates = {coordinates}"]
+    energy = " + ".join(f"m*{q}'^2" for q in coordinates)
+    lines += [f'kinetic = "{energy}"', 'forces = { x = "F" }']
+    lines += ['potential = "m*g*y"'] if "y" in coordinates else []
+    lines += [f"constraints = {constraints}", "[operating_point]", *(f'{q} = "{v}"' for q, v in rest.items())]
+    with pytest.raises(SpecError, match="singular configuration"):
+        loads("\n".join(lines))
+
+
 @pytest.mark.parametrize("zero", ["0", "(1 - 1)", "(k - k)", "sin(0)", "(0*m)"])
 @pytest.mark.parametrize(
     "part",
