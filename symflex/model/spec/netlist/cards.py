@@ -36,7 +36,8 @@ TITLE_LIKE: Final = re.compile(
 CHANGES: Final = re.compile(r"(alter\w*|option\s+temp|set\s+temp)\b", re.I)
 MOST_DEPTH: Final = 20
 MOST_LINES: Final = 20_000
-DEFINING: Final = frozenset((".model", ".param", ".params", ".func", ".include", ".inc", ".lib"))
+INCLUDING: Final = (".include", ".inc", ".lib")
+DEFINING: Final = frozenset((".model", ".param", ".params", ".func", *INCLUDING))
 
 
 @dataclass(frozen=True)
@@ -81,6 +82,11 @@ class Card:
         before = TOKEN.findall(self.text[: marks[0].start()] if marks else self.text)
         words = [w for w in before if w.lower() not in ("params:", "param:")]
         return words, [(m[1], v) for m, v in zip(marks, values, strict=True)]
+
+    def instance_of(self) -> str:
+        """Return the subcircuit that a line X names, in small letters."""
+        words, _ = self.assigned()
+        return words[-1].lower() if words else ""
 
     def options(self, first: int) -> tuple[list[str], dict[str, list[str]]]:
         """Return the words from one on, and apart from them what is assigned, by names in small letters.
@@ -187,6 +193,23 @@ class Deck:
                 cards.append(Card(tuple(words), plain, Span(source, begin, end), comment))
         return cards
 
+    def expanded(self, subcircuit: Subcircuit, known: dict[int, int], depth: int = 0) -> int:
+        """Return how many lines an instance stands for, before any is expanded.
+
+        ``known`` has those found, by their heads. Files that it includes are counted when they are read.
+        """
+        head = subcircuit.head
+        if depth >= MOST_DEPTH:
+            raise head.refuse("subcircuits contain each other")
+        if id(head) not in known:
+            own = [c for c in subcircuit.body if c.keyword not in INCLUDING]
+            body, inner = self.split(own, subcircuit.known)
+            placed = (inner.get(c.instance_of()) for c in body if c.keyword[0] == "x")
+            known[id(head)] = len(own) + sum(
+                self.expanded(s, known, depth + 1) for s in placed if s is not None
+            )
+        return known[id(head)]
+
     def split(
         self, cards: Sequence[Card], known: Mapping[str, Subcircuit], depth: int = 0
     ) -> tuple[list[Card], dict[str, Subcircuit]]:
@@ -214,7 +237,7 @@ class Deck:
                     continue
             if level:
                 inner.append(card)
-            elif word in (".include", ".inc", ".lib"):
+            elif word in INCLUDING:
                 yield from self._outside(self._included(card, depth), own, defined, depth + 1)
             else:
                 yield card

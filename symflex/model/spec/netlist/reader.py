@@ -68,6 +68,7 @@ class _Netlist:
     def __init__(self, deck: Deck, top: Scope) -> None:
         self.deck, self.top = deck, top
         self.build = Build(deck)
+        self.expanded: dict[int, int] = {}  # lines that an instance of a subcircuit stands for
         self.source = ""  # which alone acts, as .source and .tf say
 
     def take(self, body: Sequence[Card]) -> None:
@@ -177,7 +178,8 @@ class _Netlist:
         pins, outer = heading[2:], words[1:-1]
         if len(pins) != len(outer):
             raise card.refuse(f"'{kind}' has {len(pins)} pins, and {len(outer)} nodes are given")
-        self.deck.count(len(subcircuit.body), card)
+        if not depth:
+            self.deck.count(self.deck.expanded(subcircuit, self.expanded), card)
         body, inner = self.deck.split(subcircuit.body, subcircuit.known, depth)
         nodes = {p.lower(): line.node(w) for p, w in zip(pins, outer, strict=True)}
         inside = Scope(f"{line.path}.", f"{scope.prefix}{card.words[0]}_", nodes, scope, inner)
