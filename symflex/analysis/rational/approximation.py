@@ -86,13 +86,17 @@ class ErrorScan:
 
     frequency_hz: npt.NDArray[np.float64]  # frequency_hz, error: increasing frequencies, errors there
     error: npt.NDArray[np.float64]
-    at: Callable[[float], float]  # the error at a frequency [Hz]
+    errors_at: Callable[[float], tuple[float, float, float]]  # error, plain and dip_hz at a frequency [Hz]
     plain: npt.NDArray[np.float64]  # ``|R - G|/|G|``, dips not filled
     dip_hz: npt.NDArray[np.float64]  # frequency of the zero in whose dip a sample is; nan outside of all
 
     def __post_init__(self) -> None:
         for array in (self.frequency_hz, self.error, self.plain, self.dip_hz):
             array.setflags(write=False)
+
+    def at(self, frequency_hz: float) -> float:
+        """Return the error at a frequency [Hz]."""
+        return self.errors_at(frequency_hz)[0]
 
     @property
     def is_rigorous(self) -> bool:
@@ -172,7 +176,7 @@ def scan_error(
     errors_at = partial(_errors_at, bound, approximation, zeros, on_axis)
     frequencies = adaptive_grid(bound, low_hz, high_hz, POINTS, roots) / (2 * np.pi)
     found = np.array([errors_at(f) for f in frequencies.tolist()])
-    return ErrorScan(frequencies, found[:, 0], lambda f: errors_at(f)[0], found[:, 1], found[:, 2])
+    return ErrorScan(frequencies, found[:, 0], errors_at, found[:, 1], found[:, 2])
 
 
 def _errors_at(
