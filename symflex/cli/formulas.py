@@ -279,7 +279,7 @@ def export(spec: Specification, given: ExportOptions) -> int:
     have infinitely many states, or a function has more zeros than poles.
 
     --sample writes difference equations: code for a controller or filter that takes one step for each
-    sample, or with --to state-space its matrices. Rounding errors are measured. A delay may be any
+    sample, or with --to state-space its matrices. Rounding errors are bounded. A delay may be any
     fraction of a sample.
 
     --form band writes a product over the poles and zeros in a band, times a short polynomial's exponential:

@@ -17,8 +17,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import isfinite, pi
-from random import Random
+from decimal import ROUND_CEILING, Context
+from itertools import pairwise
+from math import inf, isfinite, pi
 from sys import float_info
 
 from flint import acb, arb
@@ -28,9 +29,11 @@ from symflex.balls import precision
 from symflex.errors import Diagnostic, ModelError
 
 SAMPLES, FREQUENCIES = 1000, 200
-"""Samples of a run that measures rounding, +1 or -1 at random, which excites all frequencies, and frequencies
-at which responses are compared, over four decades up to half of the sampling frequency."""
-MEASURE_BITS = 600  # precision of the run that counts as exact: close poles cost a few hundred bits
+"""Samples of the runs from rest whose rounding is bounded, and frequencies at which responses are compared,
+over four decades up to half of the sampling frequency."""
+MEASURE_BITS = 600  # precision of runs that count as exact: close poles cost a few hundred bits
+UNIT_ROUNDOFF = 2.0**-53  # largest relative error of one operation in doubles
+SECOND_ORDER = 1.01  # covers products of rounding errors, which are far smaller than their sum
 LARGE = 1e-9  # relative error from which the user is warned: the best converters, of 24 bits, resolve 6e-8
 SMALLEST = float_info.min / float_info.epsilon  # share of the largest coefficient that is below its rounding
 PAIR = 2  # poles of a section of second order, and zeros
@@ -51,6 +54,30 @@ class FilterSection:
             more = w[first + i + 1] if i + 1 < count else 0.0
             w[first + i] = b * x - a * y + more
         return y
+
+    def filtered(self, x: Sequence[arb]) -> list[arb]:
+        """Return the output of a run from rest, without rounding to doubles."""
+        above, below = ([arb(c) for c in side] for side in (self.above, self.below))
+        outputs: list[arb] = []
+        for k in range(len(x)):
+            value = sum((b * x[k - i] for i, b in enumerate(above[: k + 1])), arb(0))
+            value -= sum((a * outputs[k - 1 - i] for i, a in enumerate(below[:k])), arb(0))
+            outputs.append(value.mid())
+        return outputs
+
+    def rounded(self, x: arb, y: arb) -> arb:
+        """Return what one step rounds away at most, as at its output, for inputs and outputs so large."""
+        parts = [(abs(arb(b)) * x, abs(arb(a)) * y) for b, a in zip(self.above[1:], self.below, strict=True)]
+        held = [sum((one + other for one, other in parts[i:]), arb(0)) for i in range(len(parts))]
+        # Products by 0 and 1 are exact, and so is a sum of which one term is 0.
+        products = [(self.above[0], abs(arb(self.above[0])) * x)]
+        products += zip(self.above[1:], (one for one, _ in parts), strict=True)
+        products += zip(self.below, (other for _, other in parts), strict=True)
+        lost = [size for factor, size in products if abs(factor) not in (0, 1)]
+        lost += [y] if held and self.above[0] else []
+        lost += [one + other for one, other in parts if one != 0 and other != 0]
+        lost += [value for value, more in pairwise(held) if more != 0]
+        return sum(lost, arb(0)) * UNIT_ROUNDOFF
 
     def enclosed(self, z: acb) -> acb:
         """Return the value at z with these coefficients, exactly."""
@@ -105,18 +132,31 @@ class DifferenceEquation:
             outputs.append(x)
         return outputs
 
-    def error_of_output(self) -> float:
-        """Return how far a run is off an exact one, over the largest value; infinite on overflow."""
-        random = Random(1)
-        u = [random.choice((1.0, -1.0)) for _ in range(SAMPLES)]
-        computed, exact = self.run(u), _exact_run(self.sampled, u)
-        largest = max(abs(y) for y in exact)
-        if largest == 0:
-            return 0.0
-        if not all(map(isfinite, computed)):
-            return float("inf")
+    def bounds_of_output(self) -> tuple[float, float]:
+        """Return how far a run is off at most, and how large it may be, for any input from -1 to 1.
+
+        Both are sums over an impulse response: what is largest comes from the input with its signs. Rounded
+        coefficients change that response; what one step of a section rounds away is added to its output
+        (Higham 2002, Accuracy and Stability of Numerical Algorithms, section 3.1). Infinite on overflow.
+        """
+        impulse = [1.0] + [0.0] * (SAMPLES - 1)
         with precision(MEASURE_BITS):
-            return max(float(abs(y - x) / largest) for x, y in zip(computed, exact, strict=True))
+            exact = _exact_run(self.sampled, impulse)
+            late = [arb(0)] * self.sampled.late + [arb(value) for value in impulse]
+            inputs = [late[:SAMPLES]]
+            for section in self.sections:
+                inputs.append(section.filtered(inputs[-1]))
+            error = sum((abs(x - y) for x, y in zip(exact, inputs[-1], strict=True)), arb(0))
+            onwards = [arb(value) for value in impulse]
+            for section, *around in reversed(list(zip(self.sections, inputs, inputs[1:], strict=False))):
+                taken, given = (sum(map(abs, values), arb(0)) for values in around)
+                onwards = FilterSection((1.0,) + (0.0,) * len(section.below), section.below).filtered(onwards)
+                error += section.rounded(taken, given) * sum(map(abs, onwards), arb(0))
+                onwards = FilterSection(section.above, (0.0,) * len(section.below)).filtered(onwards)
+            most = arb(float_info.max)
+            bounds = error * SECOND_ORDER, sum(map(abs, exact), arb(0))
+            off, largest = (float(x.upper()) if x < most else inf for x in bounds)
+            return off, largest
 
     def error_of_response(self) -> float:
         """Return how far rounding of coefficients takes the frequency response off, over its value."""
@@ -134,18 +174,29 @@ class DifferenceEquation:
 
     def measured(self) -> tuple[str, str]:
         """Return a sentence on both errors, and a warning, empty unless they are large."""
-        output, response = self.error_of_output(), self.error_of_response()
+        (error, largest), response = self.bounds_of_output(), self.error_of_response()
         said = (
-            f"Over {SAMPLES} samples of +1 or -1 at random the output is off by at most {output:.2g} of its "
-            f"largest value; its frequency response is off by at most {response:.2g} of its value, at "
-            f"{FREQUENCIES} frequencies below half of the sampling frequency."
+            f"For any inputs from -1 to 1, over {SAMPLES} samples from rest, rounding takes the output off "
+            f"by at most {_rounded_up(error)}; the output may be as large as {largest:.2g} there. The "
+            f"frequency response is off by at most {response:.2g} of its value, measured at {FREQUENCIES} "
+            "frequencies below half of the sampling frequency."
         )
+        output = error / largest if 0 < largest < inf else error
         name = self.sampled.tf
         if all(c == 0 for c in self.sampled.numerator):
             return said, f"{name} is zero at every sample"
         if max(output, response) <= LARGE:
             return said, ""
         return said, f"{name}: rounding costs {max(output, response):.2g}, more than {LARGE:g}"
+
+
+def _rounded_up(bound: float) -> str:
+    """Return a bound with two digits.
+
+    >>> _rounded_up(4.71e-11), _rounded_up(3.0), _rounded_up(0.0)
+    ('4.8e-11', '3', '0')
+    """
+    return f"{float(Context(prec=2, rounding=ROUND_CEILING).create_decimal_from_float(bound)):.2g}"
 
 
 def difference_equation(sampled: SampledTransferFunction, *, is_direct: bool = False) -> DifferenceEquation:

@@ -115,7 +115,7 @@ def test_a_pade_filter_of_one_sample_is_one_sample_of_delay():
     pade = discretised("(1 - T*s/2)/(1 + T*s/2)", "tustin", parameters='parameters.T = "1 ms"')
     made = difference_equation(pade)
     assert made.run(U) == [0.0, *U[:-1]]
-    assert made.error_of_output() == 0.0
+    assert made.bounds_of_output() == (0.0, 1.0)
     theirs = pade.to_control()
     assert theirs.num[0][0].tolist() == [1.0]
     assert theirs.den[0][0].tolist() == [1.0, 0.0]

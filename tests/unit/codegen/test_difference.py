@@ -10,9 +10,9 @@ from collections import Counter
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
-from random import Random
 from xml.etree import ElementTree
 
+import mpmath
 import numpy as np
 import pytest
 from flint import acb, arb
@@ -205,23 +205,44 @@ def test_sections_lose_far_less_than_one_direct_form():
     assert "rounding costs" in direct.measured()[1]
 
 
-def test_the_errors_measured_are_those_of_another_run():
-    sampled = sampled_transfer_function(rational("1/(s^2 + s/10 + 9)"), Sampling(Fraction(1, 10)))
+@pytest.mark.parametrize(
+    ("text", "rate", "method"),
+    [
+        ("40*(1 + 1/(0.5*s) + 0.1*s/(1 + 0.02*s))", 100, "tustin"),
+        ("1/(s^2 + s/10 + 9)", 10, "zoh"),
+        ("1/s^2", 100, "zoh"),
+        ("exp(-0.3*s)/(s + 1)", 10, "zoh"),
+    ],
+)
+def test_the_bound_of_the_output_holds_for_every_sequence(text, rate, method):
+    # The recursion in sixty digits by mpmath; inputs at random, and the one that makes the output largest.
+    sampled = sampled_transfer_function(rational(text), Sampling(Fraction(1, rate), method))
     made = difference_equation(sampled)
-    stated = made.error_of_output()
-    # Extended precision is a thousand times finer, and lfilter another program.
-    random = Random(1)
-    u = np.array([random.choice((1.0, -1.0)) for _ in range(1000)], np.longdouble)
-    num, den = (
-        [np.longdouble(c.str(25, radius=False)) for c in p] for p in (sampled.numerator, sampled.denominator)
-    )
-    y = [np.longdouble(0)] * 2
-    for k in range(1000):
-        past = [u[k - i] if k >= i else np.longdouble(0) for i in range(3)]
-        y.append(sum(b * x for b, x in zip(num, past, strict=True)) - den[1] * y[-1] - den[2] * y[-2])
-    exact = np.array(y[2:])
-    found = np.array(made.run(u.astype(float).tolist()), np.longdouble)
-    assert float(np.max(np.abs(found - exact)) / np.max(np.abs(exact))) == pytest.approx(stated, rel=0.05)
+    error, largest = made.bounds_of_output()
+    with mpmath.workdps(60):
+        num, den = (
+            [mpmath.mpf(c.mid().str(60, radius=False)) for c in side]
+            for side in (sampled.numerator, sampled.denominator)
+        )
+
+        def exact(u):
+            late, y = [0.0] * sampled.late + u, []
+            for k in range(len(u)):
+                now = sum(b * late[k - i] for i, b in enumerate(num[: k + 1]))
+                y.append(now - sum(a * y[k - i] for i, a in enumerate(den[1 : k + 1], 1)))
+            return y
+
+        impulse = exact([1.0] + [0.0] * 999)
+        sequences = [np.random.default_rng(seed).choice([-1.0, 1.0], 1000).tolist() for seed in range(2)]
+        sequences.append([1.0 if x >= 0 else -1.0 for x in reversed(impulse)])
+        for u in sequences:
+            outputs = exact(u)
+            assert max(abs(y - x) for x, y in zip(made.run(u), outputs, strict=True)) <= error
+            assert max(map(abs, outputs)) <= largest * (1 + 1e-15)
+        assert abs(outputs[-1]) == pytest.approx(largest, rel=1e-12)
+    assert error < 1e-11 * largest
+    (stated,) = re.findall(r"takes the output off by at most (\S+);", made.measured()[0])
+    assert error <= float(stated) <= 1.1 * error
 
 
 # ------------------------------------------------------------------------- names and texts that are hostile
