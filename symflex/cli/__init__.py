@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import gc
 import os
+import signal
 import sys
 import warnings
 from importlib import import_module
 from io import StringIO, TextIOWrapper
 from pathlib import Path
+from types import FrameType
 
 import click
 
-BUDGET_EXCEEDED = 5  # an exit code
+BUDGET_EXCEEDED, STOPPED = 5, 130  # exit codes
 YOUNG_OBJECTS = 100_000  # made between looks for cycles, some 20 MB; Python's 700 are few: a start keeps all
 WATCHED = "watched"  # what the context holds of a command line that was started as a program
 
@@ -140,17 +142,29 @@ def main(arguments: list[str] | None = None) -> None:
         # A unit such as µm must not stop a command where the terminal's encoding lacks the character.
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
+    before = signal.getsignal(signal.SIGINT)
+    if before is not signal.SIG_IGN:
+        signal.signal(signal.SIGINT, _interrupt)
     code = run(arguments, is_program=True)
+    if code != STOPPED:
+        signal.signal(signal.SIGINT, before)
     try:
         sys.stdout.flush()
         sys.stderr.flush()
     except OSError as problem:
         code = _unwritable(problem)
     gc.freeze()  # what modules hold need not be searched for cycles once more at the end
-    if code == BUDGET_EXCEEDED:
-        # Taking a large computation apart piece by piece would take time that is over.
+    if code in (BUDGET_EXCEEDED, STOPPED):
+        # Taking a large computation apart piece by piece would take time that is over. And Python ends by a
+        # signal, without this code, if Ctrl-C has met it within 'exec'.
         os._exit(code)
     sys.exit(code)
+
+
+def _interrupt(_: int, frame: FrameType | None) -> None:
+    """Stop, once: the terminal and the process that watches may both send Ctrl-C."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    raise KeyboardInterrupt
 
 
 def run(arguments: list[str] | None = None, *, is_program: bool = False) -> int:
@@ -172,7 +186,7 @@ def run(arguments: list[str] | None = None, *, is_program: bool = False) -> int:
         return stop.exit_code
     except click.exceptions.Abort:
         click.echo("stopped", err=True)
-        return 130
+        return STOPPED
     except click.ClickException as problem:
         from symflex.cli.reporting import say  # most commands go well
 

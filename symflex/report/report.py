@@ -6,11 +6,10 @@ import json
 import platform
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, wait
 from dataclasses import dataclass, replace
 from functools import partial
 from importlib import metadata
-from multiprocessing import get_context
 from pathlib import Path
 from time import monotonic
 from typing import Final
@@ -45,7 +44,7 @@ from symflex.report.sections.roots import stability_mark
 from symflex.report.study import Study, attempt
 from symflex.roots import Progress
 from symflex.roots.pole_zero_map import WORST_FIRST
-from symflex.sweep.run import end_with_parent
+from symflex.sweep.run import open_pool
 
 MOST_MODELS: Final = 200
 TICK: Final = 0.5  # seconds between two reports of progress while nothing ends
@@ -212,35 +211,29 @@ def _in_processes(
     allow_outside: tuple[Path, ...],
 ) -> dict[str, Chapter]:
     """Return the chapters of models whose processes came to an end of their own."""
-    # A new interpreter in each process: what this one has open or threaded is not copied.
-    spawning = get_context("spawn")
     count = min(processes, len(named))
     done: dict[str, Chapter] = {}
     chapters, time = entered_budget().share(CHAPTERS), entered_budget().share(WAITING)
-    with ProcessPoolExecutor(count, mp_context=spawning, initializer=end_with_parent) as pool:
+    with open_pool(count) as pool:
         given = (measured, allow_outside, chapters.deadline, chapters.memory)
         waiting = {pool.submit(_chapter_in, path, stem, *given): stem for stem, path in named.items()}
         total = len(waiting)
-        try:
-            while waiting:
-                at_work = ", ".join(list(waiting.values())[:count])
-                ended = total - len(waiting)
-                progress.report(ended / (total + 1), f"{ended} of {counted(total, 'model')}; {at_work}")
-                if time.left == 0:
-                    # Processes in an operation that cannot be asked end with this one.
-                    pool.shutdown(wait=False, cancel_futures=True)
-                    for stem in waiting.values():
-                        reason, code = TIME_OVER.message, BudgetError.exit_code
-                        done[stem] = failed_chapter(named[stem], stem, reason, code, allow_outside)
-                    break
-                for future in wait(waiting, min(TICK, time.left or TICK), FIRST_COMPLETED).done:
-                    stem = waiting.pop(future)
-                    chapter = _outcome(future, named[stem], stem, allow_outside)
-                    if chapter is not None:
-                        done[stem] = chapter
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
+        while waiting:
+            at_work = ", ".join(list(waiting.values())[:count])
+            ended = total - len(waiting)
+            progress.report(ended / (total + 1), f"{ended} of {counted(total, 'model')}; {at_work}")
+            if time.left == 0:
+                # Processes in an operation that cannot be asked end with this one.
+                pool.shutdown(wait=False, cancel_futures=True)
+                for stem in waiting.values():
+                    reason, code = TIME_OVER.message, BudgetError.exit_code
+                    done[stem] = failed_chapter(named[stem], stem, reason, code, allow_outside)
+                break
+            for future in wait(waiting, min(TICK, time.left or TICK), FIRST_COMPLETED).done:
+                stem = waiting.pop(future)
+                chapter = _outcome(future, named[stem], stem, allow_outside)
+                if chapter is not None:
+                    done[stem] = chapter
     return done
 
 

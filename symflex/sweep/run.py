@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import os
 import pickle
+import signal
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from contextlib import contextmanager
 from hashlib import sha256
-from multiprocessing import connection, get_context, parent_process
+from multiprocessing import active_children, connection, get_context, parent_process
 from pathlib import Path
 from threading import Thread
 from time import monotonic
@@ -72,11 +73,48 @@ def open_executor(
     if count == 1:
         yield None, 1
         return
-    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"), initializer=end_with_parent)
-    try:
+    with open_pool(count) as pool:
         yield pool, count
+
+
+@contextmanager
+def open_pool(count: int) -> Iterator[ProcessPoolExecutor]:
+    """Open processes on this computer, and end them with the block: at once where an exception leaves it."""
+    others = set(active_children())
+    # A new interpreter in each process: what this one has open or threaded is not copied.
+    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"), initializer=_begin_work)
+    try:
+        with _uninterrupted():
+            for _ in range(count):
+                pool.submit(int)  # which starts a process
+        yield pool
+    except BaseException:
+        for worker in set(active_children()) - others:
+            worker.kill()
+        pool.shutdown(wait=False, cancel_futures=True)
+        raise
+    pool.shutdown(cancel_futures=True)
+
+
+@contextmanager
+def _uninterrupted() -> Iterator[None]:
+    """Put off Ctrl-C; processes that are started meanwhile put it off until they ignore it."""
+    if not hasattr(signal, "pthread_sigmask"):  # as on Windows
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
     finally:
-        pool.shutdown(cancel_futures=True)
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _begin_work() -> None:
+    """Leave Ctrl-C, which a terminal sends to all processes, to the one that started this."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    end_with_parent()
 
 
 def end_with_parent() -> None:

@@ -1,3 +1,4 @@
+import multiprocessing
 import os
 import shutil
 import signal
@@ -13,6 +14,7 @@ import symflex
 from symflex.errors import BudgetError, UsageError
 from symflex.sweep import chunk_size, read_design, run_sweep, sweep_key, sweep_task
 from symflex.sweep.files import npz_bytes, open_journal
+from symflex.sweep.run import open_pool
 from tests.house.repository import ROOT
 from tests.unit.sweep.models import LOOP, SLIDING_FREE, oscillator
 
@@ -284,3 +286,23 @@ def test_a_cluster_of_two_workers_gives_the_same_bytes(tmp_path):
     command, environment = symflex_sweep(tmp_path, "cluster.nc")
     subprocess.run([sys.executable, str(script), *command], env=environment, check=True, capture_output=True)
     assert (tmp_path / "cluster.nc").read_bytes() == run(tmp_path, "one.nc", "--workers", "1")
+
+
+def test_processes_end_at_once_where_an_exception_leaves_their_block():
+    # They sleep for a minute; who leaves waits for none.
+    begun, others = time.monotonic(), set(multiprocessing.active_children())
+    with pytest.raises(KeyError), open_pool(2) as pool:
+        for _ in range(4):
+            pool.submit(time.sleep, 60)
+        raise KeyError
+    for worker in set(multiprocessing.active_children()) - others:
+        worker.join(10)
+    assert set(multiprocessing.active_children()) <= others
+    assert time.monotonic() - begun < 30
+
+
+@pytest.mark.slow
+def test_processes_ignore_ctrl_c_which_is_for_who_started_them():
+    with open_pool(1) as pool:
+        assert pool.submit(signal.getsignal, signal.SIGINT).result() == signal.SIG_IGN
+    assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
