@@ -241,7 +241,9 @@ class DistributedFactors(AxisSearch):
         origin = side
         if any(factor.is_hidden for factor in self.factors):
             origin = Side(*self._product(gain, hidden=False), COUNT_DIGITS)
-        seen = [root for root in origin.roots if root.on_imaginary_axis or not origin.is_finite]
+        # On the axis of a root of s only 0 is on that of s.
+        at_axis = (root for root in origin.roots if self.bound.sheets == 1 or root.is_zero)
+        seen = [root for root in at_axis if root.on_imaginary_axis or not origin.is_finite]
         zeros = count_roots(seen)
         if not all(root.certified for root in seen):
             self.reasons.append("poles next to s = 0 are counted as poles at 0")

@@ -122,7 +122,11 @@ def find_stable_gains(
         counted_in=loop.gain.counted_in,
     )
     # What all gains leave open may be known of one: terms outweigh one another, or the loop is passive.
-    if nominal is not None and end is None and stability.verdict.word == "unknown":
+    # What is said of a range does not prove one gain of it where next to s = 0 poles are not followed.
+    is_open = stability.verdict.word == "unknown" or (
+        root is not None and along is not None and along.reasons
+    )
+    if nominal is not None and end is None and is_open:
         stability = replace(stability, at_nominal=_verdict_at(loop, nominal))
     loop_gain = None if root else _loop_gain(loop, along, digits + GUARD_DIGITS)
     phase_margins: tuple[PhaseMargin, ...] = ()

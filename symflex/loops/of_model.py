@@ -126,7 +126,9 @@ def stability(
     try:
         loop = characteristic_loop(model, given.gain, values, what)
         written = find_stable_gains(loop, limits, digits, radians)
-        if isinstance(loop, Loop) and (given.peaks or not loop.has_waves) and model.data_end is None:
+        # Of polynomials in s peaks are quick.
+        are_quick = isinstance(loop, Loop) and not loop.has_waves and loop.bound.sheets == 1
+        if isinstance(loop, Loop) and (given.peaks or are_quick) and model.data_end is None:
             if written.is_stable and loop.nominal and is_straight(loop):
                 written = replace(written, peaks=loop_peaks(loop, loop.nominal))
     except BudgetError:

@@ -198,7 +198,7 @@ class StabilityMap(Printed):
         """Whether the loop is stable with its nominal gain, in the words of all commands."""
         interval, beyond = self.nominal_interval, "" if self.is_complete else self.reasons[0]
         beyond = beyond or self.where_data_end
-        if interval is None:
+        if interval is None or (self.is_gain and self.reasons and self.at_nominal):
             reason = NO_NOMINAL if self.nominal is None else BESIDE
             word = self.at_nominal or StabilityVerdict("unknown", None, False, reason)
         else:

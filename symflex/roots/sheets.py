@@ -28,7 +28,14 @@ from symflex.roots.distributed.right_half_plane import MARGIN, NOT_COUNTED, last
 from symflex.roots.distributed.side import Side
 from symflex.roots.functions.kernel_function import has_kernels
 from symflex.roots.loss_modes import UNJUDGED
-from symflex.roots.pole_zero_map import PoleZeroMap, StabilityVerdict, chosen, judge, right_beyond
+from symflex.roots.pole_zero_map import (
+    HiddenRoot,
+    PoleZeroMap,
+    StabilityVerdict,
+    chosen,
+    judge,
+    right_beyond,
+)
 from symflex.roots.polynomial_roots import in_order
 from symflex.roots.problem import cancelled
 from symflex.roots.region import Band, Everything, Modes, Rectangle, Region
@@ -76,7 +83,8 @@ def locate_on_sheet(
     poles, zeros = (chosen(side, region) for side in sides)
     hidden = [replace(h, root=r) for h in located.hidden for r in on_sheet([h.root], bound)[0]]
     hidden += [replace(h, root=_shifted(h.root, bound)) for h in apart.hidden]
-    verdict, known = _verdict(bound, apart, digits)
+    verdict, known, unseen = _verdict(bound, apart, digits)
+    hidden += map(HiddenRoot, right_beyond(unseen, [h.root for h in hidden]))
     beyond = right_beyond(known, poles)
     found = count_roots((*poles, *zeros, *beyond, *(h.root for h in hidden)))
     missing = located.certificate.counted - located.certificate.found
@@ -184,8 +192,8 @@ def _shifted(root: Root, bound: BoundTransferFunction) -> Root:
 
 def _verdict(
     bound: BoundTransferFunction, apart: PoleZeroMap, digits: int
-) -> tuple[StabilityVerdict, Sequence[Root]]:
-    """Return whether the model is stable, and the poles in the sector that contains all that may grow."""
+) -> tuple[StabilityVerdict, Sequence[Root], Sequence[Root]]:
+    """Return whether the model is stable, with poles and hidden modes in the sector of all that may grow."""
     sides, reasons, is_singular = list[list[Root]](), list[str](), False
     parts = [Factored.number(bound.ratio.ring, 1) if bound.is_zero else bound.den, cancelled(bound)]
     for part, others in zip(parts, (apart.all_poles, [h.root for h in apart.hidden]), strict=True):
@@ -202,7 +210,7 @@ def _verdict(
     verdict = judge(sides[0], "; ".join(dict.fromkeys(reasons)), hidden=sides[1])
     if verdict.word == "stable" and is_singular and bound.root is not None and bound.root.shift == 0:
         verdict = replace(verdict, word="marginal", reason=SINGULAR)
-    return verdict, sides[0]
+    return verdict, sides[0], sides[1]
 
 
 def _growing(bound: BoundTransferFunction, side: Side) -> tuple[Sequence[Root], str]:

@@ -13,8 +13,10 @@ from math import log, pi
 import mpmath
 import pytest
 
+import symflex
 from symflex import pipeline
 from symflex.codegen.javascript import JAVASCRIPT, RESERVED
+from symflex.figures.loops import verdict_of_closed
 from symflex.letters.routh import conditions
 from symflex.live import page
 from symflex.loops import of_model
@@ -23,6 +25,8 @@ from symflex.loops.over import stability_over
 from symflex.loops.spread import stability_spread
 from symflex.model import Model
 from symflex.options import StabilityOptions
+from symflex.roots import Modes
+from symflex.sweep.points import VERDICTS
 
 LAMBERT = float(mpmath.lambertw(mpmath.exp(0.5)) / 0.5 - 1)  # s + 1 = 2 exp(-s/2)
 
@@ -40,11 +44,14 @@ class Case:
     is_lumped: bool = True  # there are conditions in letters
     is_followed: bool = True  # over any parameter, as not with roots of s
 
-    def model(self, value: str) -> Model:
-        return pipeline.loads(
+    def written(self, value: str) -> str:
+        return (
             f'symflex = 1\nparameters.p = {{ value = "{value} {self.unit}", assume = "real" }}\n'
             'parameters.K = 1\nparameters.T = "1 s"\n' + self.text
         )
+
+    def model(self, value: str) -> Model:
+        return pipeline.loads(self.written(value))
 
 
 LOOP = 'y = "K*(r - y)/(s + 1)"'
@@ -231,11 +238,7 @@ def test_all_commands_call_the_twin_stable(name: str) -> None:
     model = case.model(case.good)
     assert of_roots(model) == {"stable"}
     said = of_commands(model, is_followed=case.is_followed)
-    if not case.is_followed:
-        # Loops with roots of s are not certified next to s = 0.
-        assert "unstable" not in said.values()
-    else:
-        assert set(said.values()) == {"stable"}, said
+    assert set(said.values()) == {"stable"}, said
 
 
 def test_a_loop_is_unstable_for_every_gain_beside_a_second_one_that_is_late_and_unstable() -> None:
@@ -289,3 +292,56 @@ def test_a_page_says_of_poles_it_does_not_see_that_they_may_be_hidden() -> None:
     located = page._located(model, [pair])
     (shown,) = page._data(contents, contents.names(RESERVED)[1], located)["functions"]
     assert (shown["hides"], shown["verdict"]["word"]) == (True, "stable")
+
+
+UNDAMPED = """
+symflex = 1
+parameters = { K = 1, EI = "1 N*m^2" }
+signals = { y = "K*(r - y)/(s + 1)" }
+elements.b = { type = "beam", between = ["ground", "x"], EI = "EI", rhoA = "1 kg/m", l = "1 m" }
+inputs = { r = {}, F = { force = "x" } }
+outputs = { Y = "y", X = "x" }
+"""
+
+
+def test_a_hidden_beam_without_damping_leaves_a_loop_stable_and_is_named() -> None:
+    # Nothing supplies energy: its poles lie on the axis, for every EI.
+    model = pipeline.loads(UNDAMPED)
+    (bound,) = pipeline.derive_for_roots(model, [("Y", "r")])
+    found = [pipeline.roots(bound).verdict, of_model.stability(model, StabilityOptions("K")).verdict]
+    assert {(v.word, v.hidden) for v in found} == {("stable", "hidden poles on the imaginary axis")}
+    assert over(model, ("EI", "0.5", "2")) == "stable"
+
+
+def test_the_modes_of_a_hidden_beam_are_listed_beside_all_poles_of_the_loop() -> None:
+    (bound,) = pipeline.derive_for_roots(pipeline.loads(UNDAMPED), [("Y", "r")])
+    located = pipeline.roots(bound)
+    assert [complex(p) for p in located.poles] == [-2]
+    lowest = sorted(complex(h.root).imag for h in located.hidden if complex(h.root).imag > 0)
+    # 1 + cosh(k) cos(k) = 0 with omega = k^2: 1.8751, 4.6941 (Blevins 1979, table 8-1).
+    expected = [
+        float(mpmath.findroot(lambda k: 1 + mpmath.cosh(k) * mpmath.cos(k), x)) ** 2 for x in (1.9, 4.7)
+    ]
+    assert lowest[:2] == pytest.approx(expected, rel=1e-9)
+    assert located.hides_more
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("value", "word"), [("2", "unstable"), ("0.5", "stable")])
+def test_sweeps_nyquist_plots_and_python_give_the_verdict_of_roots(value: str, word: str) -> None:
+    model = symflex.loads(CASES["a second loop with a delay"].written(value))
+    loop = of_model.characteristic_loop(model.resolved, "K")
+    assert verdict_of_closed(loop, Fraction(1)).word == word
+    swept = model.sweep({"K": [0.5, 1.0]}, tf="Y/r")
+    assert {VERDICTS[i] for i in swept["verdict"]} == {word}
+    assert model.transfer_function("Y", "r").bind().pole_zero_map().verdict.word == word
+
+
+def test_all_hidden_roots_that_grow_are_listed_on_their_sheet() -> None:
+    text = CASES["a factor with an exponential of a root of s"].written("2000")
+    (bound,) = pipeline.derive_bound(pipeline.loads(text), [("Y", "r")])
+    hidden = [complex(h.root) for h in pipeline.roots(bound, Modes(1)).hidden]
+    # sqrt(s) = ln(2000) + 2 pi j k, and Re s > 0 for k = -1, 0, 1
+    expected = [complex(log(2000), 2 * pi * k) ** 2 for k in (-1, 0, 1)]
+    growing = sorted((s for s in hidden if s.real > 0), key=lambda s: s.imag)
+    assert growing == pytest.approx(expected, rel=1e-9)

@@ -194,3 +194,15 @@ def test_what_is_no_gain_of_a_network_is_followed_by_value():
 def test_a_gain_that_closes_no_loop_is_refused():
     with pytest.raises(ModelError, match="no pole of the model depends on 'K'"):
         found(chain(6, law="K*r"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("outputs", ["Z", "XZ", "ZX"])
+def test_a_filter_of_an_output_counts_for_the_stability_of_a_network(outputs):
+    # 1/(s - a) grows, and 1/(s + a) does not.
+    rows = {"X": 'X = "n_4.y"', "Z": 'Z = "n_3.y/(s - a)"'}
+    text = chain(4, law="K*(r - s*n_1.y)").replace('Y = "n_4.y"', "\n".join(rows[o] for o in outputs))
+    text = text.replace("[parameters]", '[parameters]\na = "1 1/s"')
+    growing = stability(pipeline.loads(text), StabilityOptions("K"))
+    assert (growing.verdict.word, growing.stable) == ("unstable", ())
+    assert stability(pipeline.loads(text.replace("s - a", "s + a")), StabilityOptions("K")).is_stable
