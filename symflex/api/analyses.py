@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from symflex.analysis.rational import RationalApproximation
     from symflex.loops.clouds import RootCloud
     from symflex.loops.peak import Peak
+    from symflex.transfer.nested_form import AnyTransferFunction
 
 POINTS = 201  # number of points of a response in time if no times are given
 
@@ -236,6 +237,12 @@ class Analyses(Plotted):
         located = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
         return self._table(located, located.zeros)
 
+    @property
+    def _stated(self) -> AnyTransferFunction:
+        """The function with all parameters, also with those that are 0 and were left out."""
+        symbolic = self.bound.symbolic if self.bound.is_reduced else None
+        return symbolic or self.bound.source
+
     def _table(self, located: PoleZeroMap, listed: Sequence[roots_layer.Root]) -> RootTable:
         letters = partial(roots_in_letters, self.bound.source, self.bound, located)
         return RootTable(Root(root, letters, symbols_of(self.bound.source.model)) for root in listed)
@@ -311,7 +318,8 @@ class Analyses(Plotted):
         """
         from symflex.loops.clouds import root_clouds  # not needed for roots
 
-        return root_clouds(self.bound, self._found(RootsOptions(None, modes), budget), spread)
+        located = self._found(RootsOptions(None, modes), budget)
+        return root_clouds(self.bound, located, spread, self._stated.model)
 
     def residues(
         self,
@@ -371,7 +379,7 @@ class Analyses(Plotted):
         from symflex.analysis.sensitivity.sensitivity import sensitivities  # not needed for roots
 
         located = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
-        model = self.bound.source.model
+        model = self._stated.model
         return SensitivityTable(
             Sensitivity(m) for m in sensitivities(model, self.bound, located, parameters, digits)
         )
@@ -392,7 +400,7 @@ class Analyses(Plotted):
         from symflex.analysis.explanation import explain_zeros  # not needed for roots
 
         located = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
-        return explain_zeros(self.bound.source.model, self.bound, located)
+        return explain_zeros(self._stated.model, self.bound, located)
 
     def rational(
         self, modes: int | None = None, form: str = "product", *, band: tuple[float, float] | None = None

@@ -441,7 +441,8 @@ class BoundTransferFunction(Toolboxes, Analyses):
         return self.bound
 
     def __reduce__(self) -> tuple[object, ...]:
-        return _bind_again, (TransferFunction(self.bound.source), dict(self.bound.values))
+        source = self.bound.symbolic or self.bound.source
+        return _bind_again, (TransferFunction(source), dict(self.bound.values))
 
     def __repr__(self) -> str:
         return f"<BoundTransferFunction {self.name}>"

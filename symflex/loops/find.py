@@ -41,9 +41,11 @@ from symflex.loops.stability_map import (
     StabilityMap,
 )
 from symflex.roots import find_polynomial_roots
+from symflex.roots.locate import locate
 from symflex.roots.pole_zero_map import WITHOUT_END, StabilityVerdict
 from symflex.roots.problem import problem_of
 from symflex.roots.root import exact_fraction
+from symflex.transfer import bind
 
 MIRRORED = "points on the imaginary axis where mirrored poles meet are not searched"
 BRANCH = "stable gains are searched where the branch point is s = 0, and not where it lies elsewhere"
@@ -205,6 +207,8 @@ def _at_nominal(loop: AnyLoop, limits: Limits, digits: int, reason: str) -> Stab
 def _verdict_at(loop: AnyLoop, gain: Fraction) -> StabilityVerdict:
     """Return what holds at one gain, also at one for which there is no solution."""
     try:
+        if isinstance(loop, Loop) and not gain:  # the model without what the gain multiplies
+            return locate(bind(loop.source, {**loop.given, loop.gain.name: gain})).verdict
         return closed_loop_roots(loop, gain).verdict
     except ModelError as error:
         return StabilityVerdict("unknown", None, False, error.diagnostics[0].message)

@@ -82,7 +82,7 @@ class Loop:
 
     def bound_at(self, gain: Fraction) -> BoundTransferFunction:
         """Return the transfer function for one value of the gain."""
-        return bind(self.source, {**self.given, self.gain.name: gain})
+        return bind(self.source, {**self.given, self.gain.name: gain}, varied=self.gain.name)
 
     @property
     def with_gain(self) -> tuple[GainPolynomial, ...]:
@@ -114,6 +114,10 @@ def characteristic_loop(
         message = f"no pole of the model depends on '{gain.name}'"
         raise ModelError(Diagnostic("SF801", message, gain.span, NO_LOOP))
     bound = _bound(tf, gain, given)
+    if bound.symbolic is not None:  # derived anew with some of the values: its ring is another
+        left = {p.name for p in bound.source.model.parameters}
+        if gain.name in left:
+            return characteristic_loop(bound.source, gain, {n: v for n, v in given.items() if n in left})
     known = dict(bound.all_values)
     # Bound it may have another value, where nothing is singular.
     declared = gain.value is not None or gain.name in given
@@ -152,11 +156,11 @@ def _bound(tf: TransferFunction, gain: ModelParameter, given: dict[str, Given]) 
     candidates += [{**given, gain.name: trial} for trial in TRIALS]
     for candidate in candidates[:-1]:
         try:
-            return bind(tf, candidate)
+            return bind(tf, candidate, varied=gain.name)
         except ModelError as error:
             if error.diagnostics[0].code != "SF231":
                 raise
-    return bind(tf, candidates[-1])
+    return bind(tf, candidates[-1], varied=gain.name)
 
 
 GAINS_LISTED = 24

@@ -56,17 +56,17 @@ def characteristic_loop(
     what: str = "a root locus or a loop gain",
 ) -> AnyLoop:
     """Return the characteristic function in a gain, of a large network unwritten; SF801, SF803, SF902."""
-    check_causal(model, what)
     parameter = _gain_of(model, gain)
     given = dict(values or {})
+    # Parameters that are given another value stay symbols until that is put in. Numbers stand in kernels,
+    # too: between symbols, factors that two wavenumbers share may be left in the characteristic function.
+    prepared = with_numbers(model, (gain, *given), in_kernels=not is_tapered(model))
+    check_causal(prepared, what)
     for name in given:
         pick_gain(model.parameters, name)
     is_large = is_large_network(model)
     if is_large and (network := _of_network(model, parameter, given)) is not None:
         return network
-    # Parameters that are given another value stay symbols until that is put in. Numbers stand in kernels,
-    # too: between symbols, factors that two wavenumbers share may be left in the characteristic function.
-    prepared = with_numbers(model, (gain, *given), in_kernels=not is_tapered(model))
     equations = assemble(prepared)
     plain = {row.name for row in equations.outputs if row.divisor.is_one}
     pairs = [p for p in model.transfer_functions if p[0] in plain] or model.transfer_functions
@@ -114,7 +114,7 @@ def stability(
     limits = gain_ends(given.limits, _gain_of(model, given.gain))
     radians = None if given.up_to is None else 2 * pi * highest_frequency(given.up_to)
     digits, what = given.digits or model.analysis.digits or 15, "stability of a loop"
-    check_causal(model, what)
+    check_causal(with_numbers(model, (given.gain, *(values or {}))), what)
     quick: StabilityMap | None = None
     # The formula of two or three members may take minutes, and their equations a second.
     if is_large_network(model, CODE_PRODUCTS) and not is_large_network(model):
@@ -141,7 +141,7 @@ def stability(
 
 def colocation(model: Model, given: ColocationOptions) -> DynamicColocation:
     """Return up to which frequency one output moves with another; see :func:`.loops.dynamic_colocation`."""
-    check_causal(model, "a bound on colocation")
+    check_causal(with_numbers(model), "a bound on colocation")
     band = None if given.band is None else band_ends(given.band, above_zero=True)
     tip, joint = derive_bound(model, pick_pairs(model, [given.tf, given.reference]))
     phase = tolerance(given.phase, "--phase", ("deg", "°"), "10 deg")

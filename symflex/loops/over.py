@@ -98,13 +98,13 @@ def characteristic(
     model: Model, names: Sequence[str], ranges: Box, pair: tuple[str, str] | None = None
 ) -> CharacteristicFunction:
     """Return a model's characteristic function in some parameters; SF801 where it cannot be followed."""
-    check_causal(model, "stability over a parameter")
+    prepared = with_numbers(model, names, in_kernels=not is_tapered(model))
+    check_causal(prepared, "stability over a parameter")
     if is_tapered(model) or model.root is not None:
         what = "members that taper" if is_tapered(model) else "roots of s"
         message = f"stability over a parameter is not available with {what}"
         span = pick_gain(model.parameters, names[0]).span
         raise ModelError(Diagnostic("SF801", message, span, _sweep(names[0])))
-    prepared = with_numbers(model, names, in_kernels=True)
     seen = pair or seen_pair(prepared)
     if pair is None:
         prepared = observed(prepared, seen[0])

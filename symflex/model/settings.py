@@ -14,9 +14,19 @@ from numbers import Rational
 from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, ModelError, Source, Span, Text, UsageError, nearest, refused
-from symflex.expressions import substitute
+from symflex.expressions import (
+    Expression,
+    Product,
+    is_number,
+    names_among,
+    nodes,
+    number,
+    replace_node,
+    substitute,
+)
 from symflex.model.declarations import DeclaredParameter, one_of, without_sign
 from symflex.model.model import ONE, ExactValue, Model, ModelParameter, rewritten
+from symflex.model.signs import line_of
 from symflex.model.units import exact_expression
 from symflex.quantities import DIMENSIONLESS, Quantity, parse_quantity, unit_of
 
@@ -180,20 +190,23 @@ def with_numbers(
 ) -> Model:
     """Return a model whose valued parameters are replaced by exact numbers; the others stay symbolic."""
     # Its transfer functions, bound, are those of the model; deriving them costs no symbols. Parameters in
-    # ``symbolic`` stay so; ``values`` stand in place of declared ones. A distributed model is returned as it
-    # is: wavenumbers and kernels are named by their parameters, and values are put in when they are bound.
-    # With ``in_kernels`` numbers stand there, too, as they may in the nested form.
-    if model.is_distributed and not in_kernels:
-        return model
+    # ``symbolic`` stay so; ``values`` stand in place of declared ones. In a distributed model 0 is put in
+    # alone: wavenumbers and kernels are named by their parameters, and values are put in when they are bound,
+    # but a law that loses a term has other points where waves vanish or meet. With ``in_kernels`` numbers
+    # stand there, too, as they may in the nested form.
+    only_zeros = model.is_distributed and not in_kernels
     given = {**{p.name: p.value for p in model.parameters}, **(values or {})}
     numbers = {
         name: exact_expression(value)
         for name, value in given.items()
-        if value is not None and name not in symbolic and not value.is_imaginary
+        if value is not None
+        and name not in symbolic
+        and not (value.is_imaginary or (only_zeros and value.rational))
     }
-
+    if not numbers:
+        return model
     model = rewritten(model, lambda expression: substitute(expression, numbers))
-    return replace(
+    model = replace(
         model,
         parameters=tuple(p for p in model.parameters if p.name not in numbers),
         definitions=tuple(
@@ -204,3 +217,22 @@ def with_numbers(
             for b in model.blocks
         ),
     )
+    return _without_vanishing_products(model) if any(is_number(n, 0) for n in numbers.values()) else model
+
+
+def _without_vanishing_products(model: Model) -> Model:
+    """Return a model without what is multiplied by 0: derivatives in fields, x, and j in ``k*(1 + j*0)``."""
+    line = line_of(model, ())
+
+    def without(expression: Expression) -> Expression:
+        for node in nodes(expression):
+            if isinstance(node, Product) and any(map(line.is_zero, node.factors)):
+                expression = replace_node(expression, node, number(0))
+        return expression
+
+    definitions = tuple(replace(d, expression=without(d.expression)) for d in model.definitions)
+    model = replace(rewritten(model, without), definitions=definitions)
+    unit = model.imaginary
+    if unit is None or any(names_among(expression, {unit.name}) for _, expression in model.expressions()):
+        return model
+    return replace(model, parameters=tuple(p for p in model.parameters if p is not unit))

@@ -28,7 +28,7 @@ from symflex.errors.optional import installed
 from symflex.files.lock import held
 from symflex.files.write import write_atomically
 from symflex.loops import pick_gain
-from symflex.model import Model
+from symflex.model import Model, with_numbers
 from symflex.model.loss_factors import check_causal
 from symflex.options import FREQUENCIES, RootsOptions, SweepOptions, band_ends
 from symflex.roots import Progress, Region
@@ -296,14 +296,14 @@ def time_left(seconds: float) -> str:
 
 def plan_sweep(model: Model, given: SweepOptions, frequencies: Sequence[float] = ()) -> tuple[Task, Design]:
     """Return what is asked for at every point, and the points."""
-    if given.of != "response":
-        check_causal(model, f"a sweep of {given.of}")
     pair = pick_pairs(model, [given.tf] if given.tf else [])[0]
     drawn = (given.draws or 0, given.seed)
     if isinstance(given.over, Mapping):
         design = design_of(model.parameters, given.over, *drawn)
     else:
         design = read_design(model.parameters, given.over, *drawn)
+    if given.of != "response":
+        check_causal(with_numbers(model, design.names), f"a sweep of {given.of}")
     region = None
     if given.of in ("poles", "zeros"):
         region = region_of(RootsOptions(modes=given.modes, band=None if given.modes else given.band))

@@ -14,6 +14,7 @@ With values that make two factors equal, such as k_1 = k_2, what was apart befor
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
@@ -22,7 +23,7 @@ from math import lcm
 
 from flint import fmpz_mpoly
 
-from symflex.algebra import LAPLACE, Factored, Radicals, Ring, degree_in
+from symflex.algebra import LAPLACE, Factored, Radicals, Ring, by_powers, degree_in
 from symflex.equations import assemble
 from symflex.errors import Diagnostic, ModelError, Text, UsageError, no_such
 from symflex.expressions import format_expression, names
@@ -106,11 +107,15 @@ def _read_value(
     return ExactValue(exact_number(parameter.name, given))
 
 
-def bind(tf: TransferFunction, values: Mapping[str, Given] | None = None) -> BoundTransferFunction:
+def bind(
+    tf: TransferFunction, values: Mapping[str, Given] | None = None, *, varied: str = ""
+) -> BoundTransferFunction:
     """Return the transfer function with the declared values, or the given ones in their place.
 
-    Values are in SI units or have a unit ("0.8 m"). Raises ModelError: SF229 a parameter without value,
-    SF231 the denominator vanishes for these values; UsageError: SF902 an unknown parameter.
+    Values are in SI units or have a unit ("0.8 m"). What vanishes with a parameter that is 0 is gone before
+    anything is divided by it, unless the parameter is the one that is ``varied``. Raises ModelError: SF229 a
+    parameter without value, SF231 the denominator vanishes for these values; UsageError: SF902 an unknown
+    parameter.
     """
     if tf.model.imaginary:
         tf.kernels.without_tapers(*LOSSY_TAPER)
@@ -118,9 +123,12 @@ def bind(tf: TransferFunction, values: Mapping[str, Given] | None = None) -> Bou
     exact = values_for(tf.model, used, dict(values or {}))
     if tf.is_large:
         return _derived_with_numbers(tf, exact, [p.name for p in tf.model.parameters])
+    if zeros := [name for name, value in exact if not value.rational and name != varied]:
+        with suppress(ModelError):  # with which there may be no model, but the limit of the formula
+            return _derived_with_numbers(tf, exact, zeros)
     images = _substitution(tf, exact)
     ring, radicals = images.ring, images.radicals
-    if degenerate := _degenerate(tf, images) or _in_step(tf, images):
+    if degenerate := _singular(tf, images):
         try:
             return _derived_with_numbers(tf, exact, degenerate)
         except ModelError as error:
@@ -215,6 +223,25 @@ def _degenerate(tf: TransferFunction, images: _Substitution) -> list[str]:
     return [p.name for p in tf.parameters_in(zeros)]
 
 
+def _singular(tf: TransferFunction, images: _Substitution) -> list[str]:
+    """Return parameters with whose values waves are other than with any, so that a formula may not hold."""
+    return _degenerate(tf, images) or _with_fewer_terms(tf, images) or _in_step(tf, images)
+
+
+def _with_fewer_terms(tf: TransferFunction, images: _Substitution) -> list[str]:
+    """Return parameters whose values take terms from a law of waves, as the foundation's from ``s*(s + c)``.
+
+    The points where its wavenumbers vanish or meet coincide then, or are gone, and what was divided by them
+    has other roots.
+    """
+    zeros: list[fmpz_mpoly] = []
+    for law in tf.kernels.dispersions:
+        for factor in (f for x in (*law.characteristic, *law.meets) for f, _ in x.factors):
+            parts = by_powers(tf.ratio.ring, factor, tf.ratio.ring.index[LAPLACE])
+            zeros += [part for part in parts.values() if images.apply(part).is_zero]
+    return [p.name for p in tf.parameters_in(zeros)]
+
+
 def _in_step(tf: TransferFunction, images: _Substitution) -> list[str]:
     """Return parameters of waves that their values make rational multiples, whose kernels share factors."""
     laws = tf.kernels.dispersions
@@ -235,7 +262,7 @@ def _derived_with_numbers(
     if derived.is_mixed:
         nameless = assemble(numeric, nested_transfer, is_nameless=True)
         derived = derive(nameless, tf.output.name, tf.input.name)
-    left = {name: value for name, value in values if name in symbolic}
+    left = {name: value for name, value in values if name in symbolic and not value.is_imaginary}
     return replace(bind(derived, left), values=values, symbolic=tf)
 
 

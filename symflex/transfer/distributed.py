@@ -264,8 +264,10 @@ class KernelReduction:
         def is_of_waves(factor: fmpz_mpoly) -> bool:
             return len(factor) > 1 and self._is_of_waves(factor)
 
-        for law in () if self._is_solved else self.table.dispersions:
-            if law.kind != "pair":
+        for law in self.table.dispersions:
+            if law.kind in ("wave", "bending"):
+                value = self._single_wave_apart(value, law)
+            if law.kind != "pair" or self._is_solved:
                 continue
             first, second = (Factored.generator(self.ring, w) for w in law.wavenumbers)
             split, meets, c_0 = self._split(law), law.discriminant, law.characteristic[0]
@@ -291,6 +293,19 @@ class KernelReduction:
             if order * min(value.exponent_of(f) for f, _ in split.factors) < 0:
                 value = value * (split**2 / meets) ** order
         return value
+
+    def _single_wave_apart(self, value: Factored, law: Dispersion) -> Factored:
+        """Return a product in which no factor hides a wavenumber that vanishes elsewhere than at s = 0.
+
+        With ``gamma^2 = s (s + c)``, ``gamma (s sinh(gamma) + gamma cosh(gamma))`` has become ``s gamma
+        sinh(gamma) + s (s + c) cosh(gamma)``: over s it would hold s + c, as a pole or a zero.
+        """
+        power, (name,) = self.normal.power_of(law), law.wavenumbers
+        if not any(f != self.ring.context.gen(0) and degree_in(f, 0) for f, _ in power.numerator().factors):
+            return value
+        wave = Factored.generator(self.ring, name)
+        times = wave if law.kind == "wave" else wave**3
+        return value.map_factors(self.ring, partial(self._divided, wave, times, power))
 
     def _conjugates(self, factor: fmpz_mpoly, law: Dispersion) -> Factored:
         """Return the product of the other polynomials that signs and order of two wavenumbers make."""

@@ -248,6 +248,8 @@ def derive_for_roots(
     """Return functions with declared values for roots, nested where that is faster, unless it explains."""
     if not model.is_distributed or _is_expanded(model):
         return derive_bound(model, pairs)
+    if not is_named:
+        model = with_numbers(model)  # 0 alone: what vanishes is gone before anything is divided by it
     is_small = not _may_be_large(model)
     if is_small and (expanded := _expanded_unless_large(model, pairs, None)) is not None:
         return expanded if is_named else _with_wavenumbers(model, pairs, expanded)
