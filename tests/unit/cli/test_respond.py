@@ -179,7 +179,9 @@ def test_a_controller_is_exported_with_its_poles_and_what_rounding_costs(oscilla
         assert done.code == 0, target
         assert "by the bilinear transformation" in done.out, target
         assert "Poles in z: 0.9988" in done.out, target
-        assert "the output is off by at most" in " ".join(done.out.replace(" * ", " ").split()), target
+        assert "rounding takes the output off by at most" in " ".join(done.out.replace(" * ", " ").split()), (
+            target
+        )
 
 
 def test_options_of_sampling_that_do_not_go_together_are_refused(oscillator):
