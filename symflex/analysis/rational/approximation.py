@@ -460,6 +460,7 @@ SCHEMA = "symflex.rational/1"
 INDENT = "  "
 ESTIMATE = "some poles or zeros could not be separated, or are not proved"
 DIGITS = 10
+WIDTH = 80  # columns of a terminal
 SHOWN_DIPS = 3  # antiresonances that are named
 JSON_DIGITS = 17  # so many give a double back exactly
 
@@ -494,16 +495,23 @@ def _validity(approximation: RationalApproximation) -> list[str]:
         else:
             least = "at least " if limit == approximation.scan.high_hz else ""
             but = _outside(approximation.outside(percent / 100))
-            lines.append(f"within {percent} % of the exact function up to {least}{limit:.6g} Hz{but}")
+            lines += _broken(f"within {percent} % of the exact function up to {least}{limit:.6g} Hz", but)
     error, scan = approximation.error, approximation.scan
     band = f"{error.low_hz:.4g} to {error.high_hz:.4g} Hz"
-    where = f"at {error.worst_at_hz:.6g} Hz{_outside(error.filled_hz)}"
-    lines.append(f"worst error from {band}: {100 * error.worst:.3g} %, {where}")
+    worst = f"worst error from {band}: {100 * error.worst:.3g} %, at {error.worst_at_hz:.6g} Hz"
+    lines += _broken(worst, _outside(error.filled_hz))
     sampled = f"{len(scan.error)} samples from {scan.low_hz:.4g} to {scan.high_hz:.6g} Hz"
     lines.append(f"sampled, not proved: {sampled}")
     if approximation.omitted_hz is not None:
         lines.append(f"the first pole left out is at {approximation.omitted_hz:.6g} Hz")
     return lines
+
+
+def _broken(line: str, outside: str) -> list[str]:
+    """Return a line with where it does not hold, which takes a line of its own if the two are too long."""
+    if len(INDENT + line + outside) <= WIDTH:
+        return [line + outside]
+    return [f"{line},", INDENT + outside.removeprefix(", ")]
 
 
 def _outside(dips_hz: Sequence[float]) -> str:

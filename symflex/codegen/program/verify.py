@@ -178,7 +178,9 @@ def _gauge(tf: AnyTransferFunction, samples: int, most: float = inf) -> _Gauge:
         values = {p.name: double_of(p.value) for p in tf.parameters if p.value}
         pieces = Pieces(tf, None if missing else values)
         if most < inf and (length := pieces.of_s(series_uses(tf)[0]).length) > most:
-            raise BudgetError(Diagnostic("SF503", f"code of its formula would have {length} operations"))
+            message = f"code of its formula would have {length} operations"
+            hint = "a band form stands for it over a band of frequencies"
+            raise BudgetError(Diagnostic("SF503", message, None, hint))
     if missing:
         if not tf.is_reduced and len(missing) > NAMED:
             missing[NAMED:] = [f"and {len(missing) - NAMED} more"]
