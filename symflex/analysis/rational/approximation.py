@@ -520,8 +520,8 @@ def _outside(dips_hz: Sequence[float]) -> str:
         return ""
     shown = ", ".join(f"{dip:.6g}" for dip in dips_hz[:SHOWN_DIPS])
     more = f" and {len(dips_hz) - SHOWN_DIPS} more" if len(dips_hz) > SHOWN_DIPS else ""
-    noun = "antiresonance" if len(dips_hz) == 1 else "antiresonances"
-    return f", outside {100 * DIP:.0f} % of the {noun} at {shown} Hz{more}"
+    noun = "the antiresonance" if len(dips_hz) == 1 else "antiresonances"
+    return f", outside {100 * DIP:.0f} % of {noun} at {shown} Hz{more}"
 
 
 def _decimal(number: mpmath.mpf, digits: int = DIGITS) -> str:

@@ -119,8 +119,8 @@ def test_what_is_said_outside_antiresonances_holds_of_the_plain_relative_error(f
         said = f"within {percent} % of the exact function up to {limit:.6g} Hz"
         if expected:
             zeros = ", ".join(f"{zero:g}" for zero in expected[:3])
-            noun = "antiresonance" if len(expected) == 1 else "antiresonances"
-            said += f", outside 10 % of the {noun} at {zeros} Hz"
+            noun = "the antiresonance" if len(expected) == 1 else "antiresonances"
+            said += f", outside 10 % of {noun} at {zeros} Hz"
         assert said in " ".join(str(R).split()), percent
         for told in (rational_json(R), R.facts()):
             assert told["outside_hz"][f"{percent} %"] == list(R.outside(tolerance)), percent
