@@ -58,7 +58,12 @@ AnyFactors = DistributedFactors | NetworkFactors
 
 
 def find_stable_gains(
-    loop: AnyLoop, limits: Limits | None = None, digits: int = 15, up_to: float | None = None
+    loop: AnyLoop,
+    limits: Limits | None = None,
+    digits: int = 15,
+    up_to: float | None = None,
+    *,
+    has_loop_gain: bool = True,
 ) -> StabilityMap:
     """Return for which gains a loop is stable, proved.
 
@@ -66,7 +71,8 @@ def find_stable_gains(
     of it; of a loop with kernels up to 100 times its value. ``digits`` are of boundaries and frequencies.
     Where it cannot be proved that no pole lies in the right half-plane beyond some frequency, poles are
     counted ``up_to`` [rad/s]; by default about ten waves of the longest element. Of a model that was fitted
-    to data poles are counted up to where these end, and no others.
+    to data poles are counted up to where these end, and no others. Of a parameter that ``has_loop_gain`` is
+    false for, margins in phase and crossovers are not asked for.
 
     SF803 a loop with kernels that is not a straight line in the gain, SF804 a range is needed, or is empty;
     SF505, SF506.
@@ -130,7 +136,7 @@ def find_stable_gains(
     )
     if nominal is not None and end is None and is_open:
         stability = replace(stability, at_nominal=_verdict_at(loop, nominal))
-    loop_gain = None if root else _loop_gain(loop, along, digits + GUARD_DIGITS)
+    loop_gain = _loop_gain(loop, along, digits + GUARD_DIGITS) if has_loop_gain and not root else None
     phase_margins: tuple[PhaseMargin, ...] = ()
     crossover = beyond = None
     if loop_gain is not None:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from math import pi
 
 from symflex.budget import spend
-from symflex.errors import BudgetError, UncertifiedError
+from symflex.errors import BudgetError, ModelError, UncertifiedError
 from symflex.loops import loop as loop_layer
 from symflex.loops.colocation import DynamicColocation, dynamic_colocation
 from symflex.loops.find import find_stable_gains
+from symflex.loops.gain_functions import Limits
 from symflex.loops.locus import is_straight
 from symflex.loops.loop import Loop, pick_gain
 from symflex.loops.networks import AnyLoop, network_loop
@@ -115,17 +117,13 @@ def stability(
     radians = None if given.up_to is None else 2 * pi * highest_frequency(given.up_to)
     digits, what = given.digits or model.analysis.digits or 15, "stability of a loop"
     check_causal(with_numbers(model, (given.gain, *(values or {}))), what)
-    quick: StabilityMap | None = None
-    # The formula of two or three members may take minutes, and their equations a second.
-    if is_large_network(model, CODE_PRODUCTS) and not is_large_network(model):
-        network = _of_network(model, _gain_of(model, given.gain), dict(values or {}))
-        with suppress(UncertifiedError):
-            quick = None if network is None else find_stable_gains(network, limits, digits, radians)
+    search = partial(find_stable_gains, limits=limits, digits=digits, up_to=radians)
+    quick = _of_equations(model, given.gain, dict(values or {}), search)
     if quick is not None and quick.certified and not given.peaks:
         return quick
     try:
         loop = characteristic_loop(model, given.gain, values, what)
-        written = find_stable_gains(loop, limits, digits, radians)
+        written = search(loop)
         # Of polynomials in s peaks are quick.
         are_quick = isinstance(loop, Loop) and not loop.has_waves and loop.bound.sheets == 1
         if isinstance(loop, Loop) and (given.peaks or are_quick) and model.data_end is None:
@@ -137,6 +135,51 @@ def stability(
         spend()  # the time may be over
         return quick
     return written if quick is None or written.certified else quick
+
+
+def _of_equations(
+    model: Model, gain: str, given: Mapping[str, Given], search: Callable[[AnyLoop], StabilityMap]
+) -> StabilityMap | None:
+    """Return what a search finds of a network of two or three members, whose formula may take minutes."""
+    if not is_large_network(model, CODE_PRODUCTS) or is_large_network(model):
+        return None
+    network = _of_network(model, _gain_of(model, gain), given)
+    with suppress(UncertifiedError):
+        return None if network is None else search(network)
+    return None
+
+
+def of_rational(
+    model: Model, name: str, limits: Limits, digits: int, *, has_pairs: bool
+) -> StabilityMap | None:
+    """Return for which values of a parameter a model is stable, if it enters rationally; None if not.
+
+    Then the characteristic function is a polynomial in it, and the search is that of a gain. Waves with two
+    wavenumbers take long along the axis, and boxes decide more of them: they are searched if ``has_pairs``.
+    """
+    if model.data_end is not None:  # gains are judged up to there, parameters everywhere
+        return None
+    search = partial(find_stable_gains, limits=limits, digits=digits, has_loop_gain=False)
+    found: StabilityMap | None = None
+    try:
+        found = _of_equations(model, name, {}, search)
+        if found is not None and found.certified:
+            return found
+        loop = characteristic_loop(model, name, what="stability over a parameter")
+        if isinstance(loop, Loop) and (loop.functions is not None or not (has_pairs or _is_quick(loop))):
+            return found
+        written = search(loop)
+    except (ModelError, UncertifiedError, BudgetError):
+        spend()  # the time may be over
+        return found
+    return written if found is None or written.certified else found
+
+
+def _is_quick(loop: Loop) -> bool:
+    """Tell whether no waves of a loop have two wavenumbers."""
+    return not loop.has_waves or all(
+        law.kind not in ("pair", "general") for law in loop.bound.kernels.dispersions
+    )
 
 
 def colocation(model: Model, given: ColocationOptions) -> DynamicColocation:

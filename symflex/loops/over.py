@@ -6,8 +6,10 @@ Output: a :class:`StabilityMap` over one, whose ends are enclosed to all digits,
 Example: ``m s^2 + b s + k + K k exp(-s T)`` with m = 8, b = 60, k = 20000 and K = 0.1 is stable up to
 T = 8.55... ms, where a pole meets the axis at 7.96 Hz, and again later.
 
-The values of one parameter are halved until no pole meets the axis for any in a part, or the part is as
-narrow as the requested digits; see :mod:`symflex.loops.boxes`.
+What a parameter does to the equations chooses the way. If it enters rationally, they are polynomials in it,
+and :func:`symflex.loops.find_stable_gains` finds the ends exactly, also where poles stay on the axis. Else
+the values are halved until no pole meets the axis for any in a part, or the part is as narrow as the
+requested digits; see :mod:`symflex.loops.boxes`.
 """
 
 from __future__ import annotations
@@ -26,6 +28,7 @@ from symflex.loops.boxes import BITS, Box, CharacteristicFunction, Ends, OpenBox
 from symflex.loops.chart import StabilityChart, count_at, find_chart
 from symflex.loops.find import gain_margins
 from symflex.loops.loop import pick_gain
+from symflex.loops.of_model import of_rational
 from symflex.loops.stability_map import BOXES, Boundary, Crossing, GainInterval, PoleCount, StabilityMap
 from symflex.model import Model, ModelParameter, with_numbers
 from symflex.model.along import is_tapered
@@ -68,6 +71,10 @@ def stability_over(
         )
     limits = tuple(_limits(model, p, given) for p in parameters)
     nominal = [None if p.value is None or p.value.pi_power else p.value.rational for p in parameters]
+    digits = given.digits or model.analysis.digits or 15
+    exact = of_rational(model, names[0], limits[0], digits, has_pairs=False) if len(names) == 1 else None
+    if exact is not None and exact.certified:
+        return exact.of_parameter
     function = characteristic(model, names, limits)
     for parameter in parameters:
         if not function.depends_on(parameter.name):
@@ -76,8 +83,12 @@ def stability_over(
     if len(names) > 1:
         undecided = float(share_of(given.resolve, "--resolve"))
         return find_chart(function, limits, nominal, parameters, undecided)
-    digits = given.digits or model.analysis.digits or 15
-    return find_intervals(function, limits[0], digits, parameters[0], nominal[0])
+    halved = find_intervals(function, limits[0], digits, parameters[0], nominal[0])
+    # Parts that boxes decide are proved for all poles; along the axis they may be counted up to a frequency.
+    if halved.certified or (halved.intervals and halved.verdict.word != "unknown"):
+        return halved
+    exact = exact or of_rational(model, names[0], limits[0], digits, has_pairs=True)
+    return exact.of_parameter if exact is not None and exact.intervals else halved
 
 
 def seen_pair(model: Model) -> tuple[str, str]:
@@ -213,6 +224,7 @@ def find_intervals(
         reasons=tuple(dict.fromkeys(reasons)),
         digits=digits,
         method=BOXES,
+        is_gain=False,
         tf=function.tf.name,
         counted_in=parameter.counted_in,
     )

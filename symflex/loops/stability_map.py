@@ -115,11 +115,12 @@ class StabilityMap(Printed):
     gain_at_end: float | None = None  # the gain with which the loop gain is one where the data end
     peaks: LoopPeaks | None = None  # of the nominal gain, if the loop is stable and they were asked for
     counted_in: tuple[str, Fraction] | None = None  # the unit in which it prints, and what one of it is
+    is_gain: bool = True  # the parameter is asked for as the gain of a loop
 
     @property
-    def is_gain(self) -> bool:
-        """Whether the parameter is the gain of a loop."""
-        return self.method != BOXES
+    def of_parameter(self) -> StabilityMap:
+        """The same of a parameter that is asked for as no gain of a loop."""
+        return replace(self, is_gain=False)
 
     def __repr__(self) -> str:
         count = len(self.boundaries)
@@ -212,7 +213,7 @@ class StabilityMap(Printed):
                 word = self.at_nominal or StabilityVerdict("unknown", least, False, reason)
             else:
                 word = StabilityVerdict("marginal" if axis else "stable", 0, True, where or beyond)
-        known = self.apart.verdict if self.is_gain or self.at_nominal is None else self.at_nominal
+        known = self.apart.verdict if self.method != BOXES or self.at_nominal is None else self.at_nominal
         return replace(word, hidden=known.hidden, moving=known.moving)
 
     @property

@@ -7,9 +7,11 @@ from random import Random
 import numpy as np
 import pytest
 
-from symflex import Model, load
+from symflex import Model, load, loads
 from symflex.errors import ModelError, UsageError
 from symflex.loops.boxes import CharacteristicFunction, OpenBox
+from symflex.loops.loop import pick_gain
+from symflex.loops.over import characteristic, find_intervals, with_values
 from tests.house.repository import ROOT
 
 LAG = Model(
@@ -21,6 +23,29 @@ LAG = Model(
 
 
 RANDOM = {"K": (0.5, 20), "c": (0.05, 1), "w": (0.5, 5), "z": (0.02, 0.8), "p": (0.1, 4)}
+
+
+GROUND_RESONANCE = """
+symflex = 1
+parameters = { Omega = "20 rad/s" }
+inputs = { F = {} }
+outputs = { X = "x" }
+[equations]
+unknowns = ["x", "y", "a", "b"]
+equations = [
+  "1100*s^2*x + 1000*s*x + 400000*x + 30*s^2*a = F",
+  "1100*s^2*y + 1000*s*y + 400000*y + 30*s^2*b = 0",
+  "60*(s^2*a + 2*Omega*s*b - Omega^2*a) + 20*(s*a + Omega*b) + 6000*a + 30*s^2*x = 0",
+  "60*(s^2*b - 2*Omega*s*a - Omega^2*b) + 20*(s*b - Omega*a) + 6000*b + 30*s^2*y = 0",
+]
+"""
+
+
+def in_boxes(model, name, limits, values=None):
+    """Return what halving the values of a parameter finds, whatever it does to the equations."""
+    model, ends = with_values(model, values), tuple(map(Fraction, limits))
+    function = characteristic(model, (name,), (ends,))
+    return find_intervals(function, ends, 15, pick_gain(model.parameters, name), None)
 
 
 def oscillator(gain: float) -> Model:
@@ -96,9 +121,14 @@ def test_a_real_pole_passes_through_infinity_where_the_highest_power_vanishes() 
     assert (low, [b.entering for b in stable.boundaries]) == (0, [1])
     assert abs(high - 1 / 0.3) < 1e-14
     kept = model.stability(over="K", limits=(-5, 8), a=-1)
-    assert not kept.certified
-    assert [(float(a), float(b)) for a, b in kept.stable] == [(-5, pytest.approx(-1)), (pytest.approx(-1), 8)]
-    assert "the highest power of s may vanish, so poles have no bound" in kept.reasons
+    assert kept.certified
+    assert [(float(a), float(b)) for a, b in kept.stable] == [(-5, -1), (-1, 8)]  # K = -1 has no solution
+    halved = in_boxes(model.resolved, "K", (-5, 8), {"a": -1})
+    assert [(float(i.low.mid()), float(i.high.mid())) for i in halved.stable] == [
+        (-5, pytest.approx(-1)),
+        (pytest.approx(-1), 8),
+    ]
+    assert "the highest power of s may vanish, so poles have no bound" in halved.reasons
 
 
 @pytest.mark.parametrize(
@@ -125,7 +155,8 @@ def test_where_a_function_of_the_parameter_has_no_value_the_rest_is_decided(
     assert stable.is_stable
 
 
-def test_a_pole_that_stays_on_the_axis_is_said() -> None:
+def test_a_pole_that_stays_on_the_axis_is_marginal_and_boxes_leave_it_open() -> None:
+    """``m s^2 + k`` has both poles on the axis for every k."""
     lossless = Model(
         parameters={"m": "1 kg", "k": "4 N/m"},
         elements={
@@ -136,9 +167,83 @@ def test_a_pole_that_stays_on_the_axis_is_said() -> None:
         outputs={"X": "x"},
     )
     stable = lossless.stability(over="k")
-    assert not stable.certified
-    assert "whether poles meet the axis" in stable.reasons[0]
+    assert stable.certified
     assert not stable.stable
+    assert [(i["right_half_plane_poles"], i["verdict"]) for i in stable.to_json_dict()["intervals"]] == [
+        (0, "marginal")
+    ]
+    halved = in_boxes(lossless.resolved, "k", (2, 8))
+    assert not halved.certified
+    assert "whether poles meet the axis" in halved.reasons[0]
+    assert not halved.stable
+
+
+def test_two_undamped_modes_meet_where_their_coupling_changes_its_sign() -> None:
+    """``(w - 2)(w - 3) - (1 - mu)`` with w = -s^2 has a double root where ``1 + 4 (1 - mu) = 0``."""
+    flutter = loads(
+        """
+symflex = 1
+parameters = { mu = 0.3 }
+inputs = { F = {} }
+outputs = { X = "x" }
+[equations]
+unknowns = ["x", "y"]
+equations = ["s^2*x + 2*x + (1 - mu)*y = F", "s^2*y + x + 3*y = 0"]
+"""
+    )
+    found = flutter.stability(over="mu").to_json_dict()
+    assert found["certified"]
+    assert [(i["right_half_plane_poles"], i["verdict"]) for i in found["intervals"]] == [
+        (0, "marginal"),
+        (2, "unstable"),
+    ]
+    (boundary,) = found["boundaries"]
+    assert float(boundary["gain"]["value"]) == pytest.approx(1.25, abs=1e-14)
+    assert float(boundary["omega"][0]["value"]) == pytest.approx(sqrt(2.5), abs=1e-14)
+
+
+def test_a_speed_that_enters_squared_has_the_boundaries_of_the_eigenvalues() -> None:
+    """Ground resonance; eigenvalues of the state matrix by numpy, and scipy's brentq on their real part."""
+    hub = loads(GROUND_RESONANCE)
+    stable = hub.stability(over="Omega", limits=(0, 200))
+    assert stable.certified
+    assert [b.gain for b in stable.boundaries] == pytest.approx(
+        [26.24594140045257, 33.47578766093715], rel=1e-12
+    )
+    assert [b.entering for b in stable.boundaries] == [2, -2]
+
+
+@pytest.mark.slow
+def test_what_boxes_proved_stands_where_gains_are_counted_up_to_a_frequency_only() -> None:
+    """``s (1 + K exp(-s)) + 1`` has infinitely many poles on the right for K > 1 (Bellman & Cooke 1963)."""
+    neutral = Model(
+        parameters={"K": 0.5},
+        signals={"y": "(r - (1 + K*exp(-s)*s)*y)/s"},
+        inputs={"r": {}},
+        outputs={"Y": "y"},
+    )
+    stable = neutral.stability(over="K", limits=(0, 3))
+    assert not stable.certified
+    assert stable.is_stable
+    ((interval,),) = ([i for i in stable.to_json_dict()["intervals"] if i["stable"]],)
+    assert float(interval["high"]["value"]) - float(interval["high"]["radius"]) <= 1
+
+
+def test_what_enters_rationally_is_answered_alike_as_a_gain_and_as_a_parameter() -> None:
+    for law in ("K", "K^2 + K", "1/K", "K/(1 + K)"):
+        model = Model(
+            parameters={"K": 1},
+            signals={"y": f"({law})*(2 - 0.3*s)/(s^3 + 2*s^2 + 3*s + 1)*(r - y)"},
+            inputs={"r": {}},
+            outputs={"Y": "y"},
+        )
+        gain, over = (
+            model.stability(**{name: "K"}, limits=(0.1, 9)).to_json_dict() for name in ("gain", "over")
+        )
+        assert over["certified"]
+        for key in ("intervals", "boundaries", "stable", "verdict", "range", "gain_margins"):
+            assert over[key] == gain[key], (law, key)
+        assert over["phase_margins"] == []  # a parameter closes no loop
 
 
 def test_a_chart_says_at_every_point_what_holds_there() -> None:
