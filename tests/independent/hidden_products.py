@@ -6,7 +6,7 @@ of its own: a matrix of polynomials, from the equations beside each place. Its d
 characteristic polynomial of all poles; those that the transfer function lacks in lowest terms are hidden.
 Models with waves have the characteristic function of a textbook instead.
 
-``python -m tests.independent.hidden_products`` prints what each command says of each case.
+``python -m tests.independent.hidden_products`` prints what each command reports of each case.
 """
 
 from __future__ import annotations
@@ -311,7 +311,7 @@ COMMANDS = ("roots", "gain", "over", "spread", "letters", "live")
 
 
 def examined(case: Case, commands: Sequence[str] = COMMANDS, seconds: float | None = None) -> dict[str, str]:
-    """Return what each command says: a word, a code that refuses, or what is wrong."""
+    """Return what each command reports: a word, a code that refuses, or what is wrong."""
     try:
         model = symflex.loads(case.text)
     except InternalError:
