@@ -149,7 +149,7 @@ class Contents:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What the user is told of band forms."""
+        """The notes on band forms that a user reads."""
         return tuple(member.note for member in self.members if member.note)
 
     @property

@@ -547,6 +547,7 @@ class _Assembly:
             constants[name] = reading.value
             hidden = reading.hidden
             if isinstance(use.element, LineElement):
+                # Laws of waves divide by what sums leave in both sides; rows keep it for the determinant.
                 hidden = hidden * evaluator.in_s(shared_by_sides(reading.value))
             self._hide(Variable("value", use.name, name), hidden)
         terminals = {

@@ -1,7 +1,7 @@
 """From expressions to linear forms over the exact ring, with the subsystems they are written with.
 
-Input: an expression of a model, wherever it stands. Output: a :class:`Dynamics`: its value in lowest terms,
-and the product of all denominators in s along its products.
+Input: an expression of a model, wherever it stands. Output: a :class:`Dynamics`: its value, and the
+product of all denominators in s along its products.
 
     "(s - 1)*P" of a block P = 1/(s - 1)    value 1, written poles s - 1, all of which cancelled
 
@@ -131,9 +131,8 @@ class ExactEvaluator:
     root: RootOfS | None = None  # where the ring's s stands for a root of s
     is_constant: bool = False  # where only constants may stand, a parameter may share its name with a node
     varying: Collection[str] = ()  # generators other than s that depend on it: definitions, delays
-    given: Mapping[str, Dynamics[Factored]] = field(
-        default_factory=dict
-    )  # the values a block's formula names
+    # What the names in a block's formula stand for.
+    given: Mapping[str, Dynamics[Factored]] = field(default_factory=dict)
 
     @cached_property
     def s(self) -> Factored:
@@ -287,13 +286,11 @@ class ExactEvaluator:
 
     def _name(self, expression: Name | Attribute) -> Dynamics[Factored | LinearForm]:
         if expression.name in self.given:
-            value = self.given[expression.name]
-            return Dynamics(value.value, value.poles)
+            return self.given[expression.name]
         is_shared = len(self.scope.meanings.get(expression.name, ())) > 1
         meaning = self.scope.lookup(expression, constant=self.is_constant and is_shared)
         if meaning.kind == "block" or (meaning.kind == "definition" and meaning.name in self.blocks):
-            block = self._block(expression, meaning.name)
-            return Dynamics(block.value, block.poles)
+            return self._block(expression, meaning.name)
         if meaning.kind == "through" and meaning.variable is not None:
             return Dynamics(self.through[meaning.variable], self.one)
         if meaning.variable is not None:

@@ -124,7 +124,7 @@ def stability(
     try:
         loop = characteristic_loop(model, given.gain, values, what)
         written = search(loop)
-        # Of polynomials in s peaks are quick.
+        # Peaks are quick where both sides are polynomials in s.
         are_quick = isinstance(loop, Loop) and not loop.has_waves and loop.bound.sheets == 1
         if isinstance(loop, Loop) and (given.peaks or are_quick) and model.data_end is None:
             if written.is_stable and loop.nominal and is_straight(loop):

@@ -241,7 +241,7 @@ SPELLINGS = {
     "1/(2*pi*f*R)": 1 / (100 * W), "1/(2*pi*R*f*C)": 1 / (2e-4 * W), "1/(f*R)": 1 / (100 * W),
     "1/f/R": 1 / (100 * W), "k/f^2": 3 / W**2, "k/(2*pi*f)^2": 3 / W**2, "1/(f^2*m)": 1 / (2 * W**2),
     "w/f": 7 / W, "f/w": W / 7, "exp(-1.5*s/f)": exp(-1.5 * POINT / 50), "exp(-s*T_s)": exp(-POINT / 50),
-    # Of frequencies over frequencies the ratio is the same in cycles and in radians.
+    # A frequency over another is the same number in cycles and in radians.
     "f/g": 2.5, "1 - (f/g)^2": -5.25, "n/f": 1, "pi*f/g": 2.5 * pi, "2*pi*f/g": 5 * pi,
     "p*s": P * POINT, "p/(2*pi)*s": P * POINT, "p*n": 0.25,
     # Definitions through definitions.
