@@ -706,7 +706,7 @@ class _Assembly:
             return None
         # A filter in an output is the output's own: as an unknown it would be a mode of all the others.
         divisor = reading.below * reading.hidden
-        return OutputRow(name, reading.value * divisor, divisor)
+        return OutputRow(name, reading.value * divisor, divisor, reading.poles)
 
 
 def _difference(equation: Equation) -> Expression:

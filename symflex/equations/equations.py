@@ -34,6 +34,7 @@ class OutputRow:
     name: str
     form: LinearForm
     divisor: Factored
+    poles: Factored  # what the output is written with; the divisor has fields' powers of s, too
 
 
 @dataclass(frozen=True, slots=True, eq=False)

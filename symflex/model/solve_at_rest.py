@@ -123,7 +123,8 @@ class Solving:
         """Solve for names; return what is left of other equations, and the names that nothing determines."""
         wanted, formulas = list(names), list[tuple[str, Left]]()
         start = {p: self.constants.known.pop(p) for p in names if p in self.constants.known}
-        rows = [_without_factor(each, wanted) for each in left]
+        may_vanish = start.keys() & self.constants.signed
+        rows = [_without_factor(each, wanted, may_vanish) for each in left]
         while found := [
             (p, solution, each)
             for each in rows
@@ -153,8 +154,12 @@ class Solving:
     def _formula(self, residual: Expression, unknown: str, wanted: Collection[str]) -> Expression | None:
         """Return a formula for the value at which a residual vanishes, None if none is seen."""
         formula = _solved(residual, unknown, wanted)
-        if formula is not None or (formula := _inverted(residual, unknown, wanted)) is None:
-            return formula
+        if formula is not None:
+            # D*X = mu(S)*X says nothing of X where mu(S) = D.
+            is_any = self.constants.vanishes(derivative(residual, Name(unknown)))
+            return None if is_any else formula
+        if (formula := _inverted(residual, unknown, wanted)) is None:
+            return None
         # A root has one sign, and an arctangent does not take every value.
         return formula if self.constants.vanishes(simplified(residual, {unknown: formula})) else None
 
@@ -422,10 +427,12 @@ def _inverted(residual: Expression, unknown: str, wanted: Collection[str]) -> Ex
     return _solved(inner, unknown, wanted)
 
 
-def _without_factor(left: Left, wanted: Collection[str]) -> Left:
+def _without_factor(left: Left, wanted: Collection[str], may_vanish: Collection[str]) -> Left:
     """Return what else vanishes, of a product with a wanted name and another: ``X_0*(mu_0 - D)``."""
     residual = left.residual
     for p in wanted:
+        if p in may_vanish:
+            continue  # a declared value decides which of both vanishes
         slope = simplified(derivative(residual, Name(p)), {})
         other = {Name(n) for n in wanted} & {*nodes(slope)}
         if other and Name(p) not in other and is_number(simplified(residual, {p: number(0)}), 0):

@@ -98,7 +98,7 @@ def solved_values(model: Model, digits: int = DIGITS) -> list[tuple[str, str]]:
     for v, unit in _solved(model):
         from symflex.roots.root import decimals  # imports numpy
 
-        printed = decimals(v.ball, arb(0), digits)
+        printed = decimals(v.ball, arb(0), digits).readable
         parts = (("", printed.re), ("radius ", printed.radius), ("declared ", v.declared_text))
         value, *more = (f"{word}{text} {unit}".rstrip() for word, text in parts if text is not None)
         shown.append((v.name, f"{value} ({', '.join(more)})"))

@@ -201,7 +201,8 @@ class _CramerQuotients:
         if shared.is_zero:  # a loop of gain one, once definitions are put in, that the output does not see
             raise explain_singular(self._equations)
         if self._reduction is not None:
-            return self._finish_distributed(output, given, num_closed, denominator, shared)
+            modes = den * self._closure.close(row.poles)
+            return self._finish_distributed(output, given, num_closed, denominator, shared, modes)
         if denominator.is_zero:
             raise explain_singular(self._equations)
         if denominator.unit < 0:
@@ -265,7 +266,13 @@ class _CramerQuotients:
         return TransferFunction(*found, *context, table, parts, self.solve, with_waves)
 
     def _finish_distributed(
-        self, output: Output, given: Input, num: fmpz_mpoly, denominator: Factored, hidden: Factored
+        self,
+        output: Output,
+        given: Input,
+        num: fmpz_mpoly,
+        denominator: Factored,
+        hidden: Factored,
+        modes: fmpz_mpoly,  # of the model and of the output's own filters
     ) -> TransferFunction:
         """Return the transfer function of a distributed system, with the kernels' relations used."""
         reduction = self._reduction
@@ -275,7 +282,7 @@ class _CramerQuotients:
             reduced = reduction.reduce(numerator, denominator, hidden / self._cleared)
         if reduction is None or reduced is None:
             raise explain_singular(self._equations)
-        determinant = self._expansion.expanded(self._closure.open(self._determinants.den)) / self._cleared
+        determinant = self._expansion.expanded(self._closure.open(modes)) / self._cleared
         cancelled = reduced.shared * reduction.hidden_where_waves_vanish(determinant, reduced)
         table = reduced.table.embedded((v, _lowest(self._opened.expanded(v))) for v in reduced.table.values)
         above, below, cancelled = map(self._opened.expanded, (reduced.num, reduced.den, cancelled))

@@ -142,6 +142,43 @@ def test_a_pole_cancelled_in_an_output_is_hidden_there():
     assert found == [("s - 1", 1)]
 
 
+@pytest.mark.parametrize(
+    ("expression", "visible", "unseen"),
+    [
+        ("(1 - exp(-s*T))/(1 - exp(-s*T))*r", 0, 1),  # the loop's own pole at 0
+        ("s*r/(1 - exp(-s*T))", 0, 1),
+        ("r/(1 - exp(-s*T))", 1, 0),
+        ("(1 - exp(-s*T))*r/(s*T)", 0, 1),  # the integrator's
+        ("(1 - exp(-s*T))*r/(s*T)^2", 1, 1),
+        ("(1 - exp(-s*T))*r", 0, 0),
+    ],
+)
+def test_a_pole_at_0_that_only_a_delay_cancels_is_hidden_in_outputs_too(expression, visible, unseen):
+    # 1 - exp(-s T) = s T - ..., which vanishes once at 0
+    start = "symflex = 1\nparameters.T = 0.2\ninputs.r = {}\n"
+    for rest in (f'outputs.y = "{expression}"', f'outputs.y = "x"\nsignals.x = "{expression}"'):
+        found = locate(pipeline.bind(pipeline.derive_all(pipeline.loads(start + rest))[0]), Modes(1))
+        at_rest = [root.multiplicity for root in found.poles if root.is_zero]
+        gone = [h.root.multiplicity for h in found.hidden if h.root.is_zero]
+        assert (sum(at_rest), sum(gone)) == (visible, unseen), rest
+
+
+def test_a_matched_duct_hides_nothing_at_0():
+    # p = 2 p_i - Z u at x = 0 and u = p/Z at l: p(l) = p_i exp(-s l/c), of waves that leave
+    text = """symflex = 1
+parameters = { Z = "2 Pa*s/m^3", c = "3 m/s", l = "1 m" }
+inputs = { p_i = { unit = "Pa" } }
+outputs = { T = "p(l)" }
+[fields.duct]
+unknowns = ["p", "u"]
+domain = ["0", "l"]
+equations = ["p' = -Z/c*s*u", "u' = -s/(Z*c)*p"]
+conditions = ["p(0) = 2*p_i - Z*u(0)", "u(l) = p(l)/Z"]
+"""
+    found = locate(pipeline.bind(pipeline.derive_all(pipeline.loads(text))[0]), Modes(1))
+    assert (found.poles, found.hidden) == ((), ())
+
+
 def test_terms_of_a_sum_share_their_poles():
     tf, found = hidden(signals='y = "P*r + P*A*r"')
     assert tf.order == (1, 2)

@@ -169,6 +169,35 @@ def test_a_value_that_is_assumed_positive_does_not_become_zero_or_negative():
     assert _solved(text.replace("x_0 = 0.3", 'x_0 = { value = 0.3, assume = "real" }'))["x_0"] == 0
 
 
+CHEMOSTAT = ["X' = m*S/(k + S)*X - D*X", "S' = D*(f - S) - m*S/(k + S)*X/Y"]
+CULTURE = {"m": 0.2, "k": 1, "Y": 0.5, "f": 10, "D_0": 0.1}
+
+
+@pytest.mark.parametrize(
+    ("X_0", "S_0", "end"),
+    [
+        ('{ value = 4, assume = "real" }', 1.2, (4.5, 1)),
+        ('{ value = 0.1, assume = "real" }', 9.9, (0, 10)),
+        ('{ value = 0, assume = "nonnegative" }', 10, (0, 10)),
+        ("0.1", 9.9, (4.5, 1)),  # positive, so it cannot wash out
+    ],
+)
+def test_a_factor_that_may_vanish_is_not_divided_by(X_0, S_0, end):
+    # mu(S) = D at S = k D/(m - D) = 1, where X = Y (f - S); or X = 0, where the feed passes through
+    rest = {"D": "D_0", "X": "X_0", "S": "S_0"}
+    text = _text({**CULTURE, "S_0": S_0}, ["X", "S"], CHEMOSTAT, rest, ["X_0", "S_0"], ["D"])
+    text = text.replace("[parameters]", f"[parameters]\nX_0 = {X_0}")
+    found = _solved(text)
+    assert (found["X_0"], found["S_0"]) == pytest.approx(end, abs=1e-12)
+
+
+def test_an_equation_that_holds_for_every_value_leaves_it_to_another():
+    # mu(S) = D holds, so the first equation says nothing of X, and the second X = Y (f - S) = 4.5.
+    rest = {"D": "D_0", "S": "k*D_0/(m - D_0)"}
+    text = _text(CULTURE, ["X", "S"], CHEMOSTAT, rest, ["X"], ["D"])
+    assert _solved(text)["X_0"] == pytest.approx(4.5, rel=1e-12)
+
+
 def test_what_has_no_declared_value_and_no_formula_is_refused_with_what_is_found():
     text = _text({}, ["x"], ["x' + x + x^3 = u"], {"u": "10"}, ["x"])
     assert _refused(text)[1]["x_0"] == [pytest.approx(2)]
