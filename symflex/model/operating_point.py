@@ -166,10 +166,8 @@ def linearised(
         kept = tuple(replace(x, expression=rewritten.get(x.name, x.expression)) for x in signals)
         return kept, [], None, {}
     for x in signals:
-        leaves = [n for n in nodes(x.expression) if point.varies(n)]
-        if x.name not in equations and all(isinstance(n, Name) and n.name in moving for n in leaves):
-            point.signals[x.name] = replace_values(x.expression, {Name(LAPLACE): number(0)})
-            point.seen |= {n.name for n in leaves if isinstance(n, Name)}
+        if x.name not in equations and all(_base(n) in moving for n in point.leaves(x.expression)):
+            point.take_signal(x)
     for name, value in point.signals.items():
         if name in point.values:  # given, and to be right
             left = point.at_rest(sum_of([Name(name), negative(value)]))
@@ -179,6 +177,8 @@ def linearised(
     after_s = {id(f) for n in products if any(map(_order_of_s, n.factors)) for f in n.factors}
     leaves = [n for e in parts for n in nodes(e) if point.varies(n) and id(n) not in after_s]
     point.bare = {n for n in leaves if isinstance(n, Name)}
+    for equation in equations.values():
+        point.infer_rates(equation)
     made = {name: point.linear(equation) for name, equation in equations.items()}
     if None not in made.values():
         point.check_names(rest)
@@ -198,10 +198,7 @@ def note_divisions(reader: Reader, constants: Constants, expressions: Iterable[E
     for whole in expressions:
         for node in nodes(whole):
             below = divisor(node)
-            if below is None or any(
-                isinstance(n, Differentiated) or (isinstance(n, Call) and n.name not in (*FUNCTIONS, *SIGNS))
-                for n in nodes(below)
-            ):
+            if below is None or any(isinstance(n, Differentiated) or _is_of_field(n) for n in nodes(below)):
                 continue
             rates = [n for n in nodes(below) if isinstance(n, Derivative)]
             plain = replace_values(below, {n: Name(format_expression(n)) for n in rates})
@@ -240,7 +237,14 @@ class _AboutRest:
         )
         self.left_over: list[Left] = []
         self.seen: set[str] = set()
-        self.signals: dict[str, Expression] = {}  # explicit ones, which follow from the others
+        self.signals: dict[str, Expression] = {}  # explicit ones, and rates, which follow from the others
+        rates = {n: v for n, v in rest.values.items() if n.endswith("'") and not is_number(v, 0)}
+        self.rates = {Name(n[:-1]): v for n, v in rates.items() if not n.endswith("''")}
+        self.drifting: set[Expression] = set()  # names in what does not stay as it is at these rates
+
+    def leaves(self, expression: Expression) -> list[Expression]:
+        """Return each leaf that varies in time once."""
+        return [n for n in dict.fromkeys(nodes(expression)) if self.varies(n)]
 
     def varies(self, node: Expression) -> bool:
         """Tell whether a node is a leaf that varies in time."""
@@ -279,11 +283,7 @@ class _AboutRest:
         """Return a linear equation of the deviations, ``None`` where there is none, which is noted."""
         try:
             whole = sum_of([self._with_primes(equation.left), negative(self._with_primes(equation.right))])
-            leaves = [n for n in dict.fromkeys(nodes(whole)) if self.varies(n)]
-            self.seen |= {format_expression(n) for n in leaves} | {
-                n.name for n in leaves if isinstance(n, Derivative)
-            }
-            self._infer_rates(equation)
+            leaves = self._met(whole)
             slopes = [(n, shorter(self.at_rest(derivative(whole, n)))) for n in leaves]
             values = {n: self._value_at_rest(format_expression(n)) for n in leaves}
             self.whole.append(Equation(replace_values(whole, values), number(0), span=equation.span))
@@ -344,12 +344,39 @@ class _AboutRest:
             expression = replace_node(expression, old, new)
         return expression
 
-    def _infer_rates(self, equation: Equation) -> None:
-        """Take the rate of what turns steadily from the equation ``theta' = omega``."""
+    def infer_rates(self, equation: Equation) -> None:
+        """Let the rate of what turns steadily follow from the equation ``theta' = omega``."""
         for one, other in ((equation.left, equation.right), (equation.right, equation.left)):
             match self._with_primes(one):
                 case Derivative(name, 1) as rate if name not in self.values and Name(name) not in self.bare:
-                    self.values.setdefault(format_expression(rate), self.at_rest(other))
+                    if not self._leads_to(rate, value := self._with_primes(other), set()):
+                        self.signals.setdefault(format_expression(rate), value)
+
+    def _leads_to(self, leaf: Expression, expression: Expression, passed: set[Expression]) -> bool:
+        """Tell whether the value of an expression at rest follows from that of a leaf."""
+        new = {*self.leaves(expression)} - passed
+        passed |= new
+        known = [self.signals[n] for each in new if (n := format_expression(each)) in self.signals]
+        return leaf in new or any(self._leads_to(leaf, each, passed) for each in known)
+
+    def take_signal(self, signal: Signal) -> None:
+        """Let the value of an explicit signal at rest follow from the others."""
+        value = self._with_primes(signal.expression)
+        self._met(value)
+        self.signals[signal.name] = replace_values(value, {Name(LAPLACE): number(0)})
+
+    def _met(self, expression: Expression) -> list[Expression]:
+        """Return the leaves of an expression; those of one that changes while angles turn are kept.
+
+        What depends on differences of angles alone stays as it is, and so do the energies of what turns.
+        """
+        leaves = self.leaves(expression)
+        self.seen |= {*map(format_expression, leaves), *map(_base, leaves)}
+        change = sum_of(product_of([v, derivative(expression, q)]) for q, v in self.rates.items())
+        varying = {n: Name(format_expression(n)) for n in nodes(change) if self.varies(n) or _is_of_field(n)}
+        if not self.constants.vanishes(replace_values(change, varying)):
+            self.drifting |= {*leaves}
+        return leaves
 
     def at_rest(self, expression: Expression) -> Expression:
         """Return an expression with the values at rest in place of all that varies."""
@@ -409,9 +436,12 @@ class _AboutRest:
                 self.reader.note("SF210", message, value.span or rest.span, hint)
             base, order = name.rstrip("'"), name.count("'")
             lower_rates = {base + "'" * k for k in range(1, order)}
-            if order and not is_number(value, 0) and (Name(base) in self.bare or lower_rates & self.seen):
+            depends = Name(base) in (self.drifting if order == 1 else self.bare)
+            if order and not is_number(value, 0) and (depends or lower_rates & self.seen):
                 message = f"'{base}' is not at rest, as '{name}' has a value, and equations depend on it"
-                hint = "only what occurs by its rates alone may turn steadily"
+                hint = (
+                    "what turns steadily may occur by its rates, and in differences of angles that turn alike"
+                )
                 self.reader.note("SF407", message, value.span or rest.span, hint)
 
     def check_at_rest(self) -> None:
@@ -484,6 +514,10 @@ def _order_of_s(factor: Expression) -> int:
         case Power(Name(name), Number(n)) if name == LAPLACE and n.denominator == 1:
             return int(n)
     return 0
+
+
+def _is_of_field(node: Expression) -> bool:
+    return isinstance(node, Call) and node.name not in (*FUNCTIONS, *SIGNS)
 
 
 def _base(node: Expression) -> str:

@@ -419,3 +419,82 @@ def test_outputs_and_signals_have_derivatives_in_time():
     s, whole = 1 + 2j, 2 * (1 + 2j) ** 2 + 3 * (1 + 2j) + 5
     assert model.transfer_function("A/F").bind()(s) == pytest.approx(s**2 / whole)
     assert model.transfer_function("V/F").bind()(s) == pytest.approx(2 * s / whole)
+
+
+# A rotor that turns at n, with a disc that nods: J_d (a'' , b'') + J_p n (b', -a') + k (a, b) = (M, 0).
+NODS = ["J_d*a'' + J_p*omega*b' + k*a = M", "J_d*b'' - J_p*omega*a' + k*b = 0"]
+SPEEDS = {  # equations of the speed, signals, values at rest
+    "a primed signal": (["J_p*q'' = T"], {"omega": "q'"}, {"q'": "n"}),
+    "a signal with s": (["J_p*q'' = T"], {"omega": "s*q"}, {"q'": "n"}),
+    "a signal of a signal": (["J_p*q'' = T"], {"omega": "2*p", "p": "q'/2"}, {"q'": "n"}),
+    "a rate that follows": (["q' = w", "J_p*w' = T"], {"omega": "q'"}, {"w": "n"}),
+    "a rate that follows from a rate": (["p' = q'", "q' = w", "J_p*w' = T"], {"omega": "p'"}, {"w": "n"}),
+    "a rate on the right": (["w = q'", "J_p*w' = T"], {"omega": "q'"}, {"w": "n"}),
+}
+
+
+@pytest.mark.parametrize("is_first", [True, False])
+@pytest.mark.parametrize("name", SPEEDS)
+def test_a_speed_at_rest_is_the_same_however_it_is_written(name, is_first):
+    turns, signals, rest = SPEEDS[name]
+    names = ["a", "b", *("p" for e in turns if "p'" in e), "q", *("w" for e in turns if "w'" in e)]
+    model = Model(
+        parameters={"J_d": 0.01, "J_p": 0.02, "k": 50, "n": 300},
+        signals=signals,
+        equations={"unknowns": names, "equations": [*turns, *NODS] if is_first else [*NODS, *turns]},
+        operating_point=rest,
+        inputs={"T": {}, "M": {}},
+        outputs={"A": "a"},
+    )
+    s = 3 + 40j
+    expected = (0.01 * s**2 + 50) / ((0.01 * s**2 + 50) ** 2 + (0.02 * 300 * s) ** 2)
+    assert model.transfer_function("A/M").bind()(s) == pytest.approx(expected, rel=1e-12)
+
+
+def test_two_inertias_turn_together_with_a_twisted_shaft():
+    model = Model(
+        parameters={"J": 2, "I": 3, "k": 5000, "c": 0.01, "n": 100},
+        equations={
+            "unknowns": ["p", "q"],
+            "equations": ["J*p'' + k*(p - q) = T", "I*q'' - k*(p - q) = -c*q'^2"],
+        },
+        operating_point={"p": "twist", "p'": "n", "q'": "n", "T": "c*n^2", "solve": ["twist"]},
+        inputs={"T": {}},
+        outputs={"W": "q'"},
+    )
+    s = 2 + 7j  # the fan brakes with 2 c n
+    expected = s * 5000 / ((2 * s**2 + 5000) * (3 * s**2 + 2 * 0.01 * 100 * s + 5000) - 5000**2)
+    assert model.transfer_function("W/T").bind()(s) == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_pendulum_on_a_turning_disc_is_a_zero_of_the_order_of_its_lengths():
+    """Den Hartog, Mechanical Vibrations, 5.6: the absorber is tuned to sqrt(R/L) times the speed."""
+    place = "(R*{0}(q) + L*{0}(q + p))'^2"
+    model = Model(
+        parameters={"J": 2, "m": 0.5, "R": "90 mm", "L": "10 mm", "n": "1800 rpm"},
+        energy={
+            "coordinates": ["q", "p"],
+            "kinetic": f"J*q'^2/2 + m/2*({place.format('cos')} + {place.format('sin')})",
+            "forces": {"q": "M"},
+        },
+        operating_point={"q'": "n"},
+        inputs={"M": {}},
+        outputs={"speed": "q'"},
+    )
+    (zero,) = (z for z in model.transfer_function("speed/M").bind().zeros() if z.im > 0)
+    assert float(zero.frequency_hz) == pytest.approx(3 * 30, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "equation", ["J*q'' + k*sin(q) = T", "J*q'' + k*(q - p) = T", "J*q'' + k*load = T"], ids=str
+)
+def test_what_depends_on_an_angle_that_turns_is_refused(equation):
+    parts = {
+        "equations": {"unknowns": ["q", "p"], "equations": [equation, "J*p'' = 0"]},
+        "operating_point": {"q'": "n", "p'": "2*n"},
+        "signals": {"load": "2*q - 3*p"},
+    }
+    refused = refusal(
+        Model, parameters={"J": 1, "k": 2, "n": 3}, inputs={"T": {}}, outputs={"Q": "q"}, **parts
+    )
+    assert refused == "SpecError SF407"
