@@ -198,9 +198,9 @@ def _write(response: EnclosedResponse, given: RespondOptions, path: Path) -> Non
 def peak(spec: Specification, given: PeakOptions) -> int:
     """Print the largest magnitude of one transfer function of SPEC over all frequencies, and where it is.
 
-    It is certified that no frequency has a larger one; a pole on the imaginary axis makes it infinite.
-    For stable lumped functions the H2 norm is printed, too. Exit code 4: no bound is known beyond some
-    frequency.
+    It is certified that no frequency has a larger one; a pole on the imaginary axis makes it infinite. With
+    complex coefficients negative frequencies count, too. For stable lumped functions the H2 norm is printed,
+    too. Exit code 4: no bound is known beyond some frequency.
     """
     from symflex import pipeline
     from symflex.loops.peak import find_peak

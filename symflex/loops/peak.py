@@ -17,13 +17,14 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, arb
 
-from symflex.algebra import NO_KERNELS, Factored, degree_in
+from symflex.algebra import LAPLACE, NO_KERNELS, Factored, composed, degree_in
 from symflex.balls import UndecidedError, ball, bits_for_digits, precision, settled
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.loops.axis import FIRST_RATIO, find_on_axis, joined, pieces
 from symflex.loops.delayed_limit import delayed_bound, delayed_limit
 from symflex.loops.loop_function import LoopFunction
+from symflex.model.loss_factors import has_loss_factors
 from symflex.options import band_ends
 from symflex.print.notebook import Printed
 from symflex.print.text import Passage
@@ -225,8 +226,27 @@ def find_peak(bound: AnyBoundFunction, digits: int = 12, band: Ends | None = Non
     has_kernels = any(value.depends_on(name) for name in bound.kernels.generators)
     if has_kernels or bound.sheets > 1 or is_complex(value):
         with precision(BITS):
-            return _Pieces(bound, LoopFunction.of(bound, bound.num, bound.den), asked).peak()
+            found = _Pieces(bound, LoopFunction.of(bound, bound.num, bound.den), asked).peak()
+        is_mirrored = not is_complex(value) or ends is not None or has_loss_factors(bound.source.model)
+        return found if is_mirrored else _of_both_signs(bound, value, found, is_known=not has_kernels)
     return _of_polynomials(replace(bound, ratio=value, kernels=NO_KERNELS, parts=None), asked)
+
+
+def _of_both_signs(bound: BoundTransferFunction, value: Factored, found: Peak, *, is_known: bool) -> Peak:
+    """Return the peak of a function with complex coefficients, which differs at negative frequencies."""
+    if not is_known or bound.sheets > 1:
+        reason = "negative frequencies, at which complex coefficients give other magnitudes"
+        return replace(found, reasons=(*found.reasons, reason))
+    mirrored = composed(value, {LAPLACE: -Factored.generator(value.ring, LAPLACE)})
+    turned = replace(bound, ratio=mirrored, kernels=NO_KERNELS, parts=None, is_of_model=False)
+    with precision(BITS):
+        other = _Pieces(turned, LoopFunction.of(turned, turned.num, turned.den), found, bound).peak()
+    other = replace(other, places=tuple(-place for place in other.places))
+    if found.magnitude.overlaps(other.magnitude):
+        places = tuple(dict.fromkeys((*found.places, *other.places)))
+        size, reasons = found.magnitude.union(other.magnitude), (*found.reasons, *other.reasons)
+        return replace(found, magnitude=size, places=places, reasons=reasons)
+    return max(found, other, key=lambda each: float(each.magnitude.mid()))
 
 
 def _of_polynomials(bound: BoundTransferFunction, asked: Peak) -> Peak:
@@ -287,8 +307,16 @@ def _h2_norm(above: PolynomialInS, below: PolynomialInS, digits: int) -> arb:
 class _Pieces:
     """The search for the peak of a quotient A/B with kernels."""
 
-    def __init__(self, bound: BoundTransferFunction, function: LoopFunction, asked: Peak) -> None:
+    def __init__(
+        self,
+        bound: BoundTransferFunction,
+        function: LoopFunction,
+        asked: Peak,
+        mirrored: BoundTransferFunction | None = None,
+    ) -> None:
         self.bound, self.function, self.asked = bound, function, asked
+        # What has the poles: a function of s, or that of which this is the value at -s.
+        self.owner, self.sign = (bound, 1) if mirrored is None else (mirrored, -1)
         self.count, self.digits = 0, min(asked.digits, MOST_DIGITS)
         self.best, self.most = arb(0), arb(0)  # a magnitude that is come near; what bounds those far out
         self.beyond: arb | None = None  # where those begin, if one may be as large; infinite if it is less
@@ -376,11 +404,11 @@ class _Pieces:
                 self.near += [] if self._is_below(piece, self.best) else [piece]
                 continue
             width, halves = place.rad() / place.mid(), (place.lower(), place.upper())
-            if width < SUSPECT and around.b.contains(0) and self.bound.is_of_model:
+            if width < SUSPECT and around.b.contains(0) and self.owner.is_of_model:
                 ends = (exact_fraction(hertz(self.bound.frequency(x))) for x in halves)
-                for pole in locate(self.bound, Band(*ends), with_zeros=False).poles:
-                    if pole.on_imaginary_axis and pole.im > 0:
-                        return pole.im
+                for pole in locate(self.owner, Band(*ends), with_zeros=False).poles:
+                    if pole.on_imaginary_axis and self.sign * pole.im > 0:
+                        return self.sign * pole.im
             if self.count > MOST_PIECES or width < NARROWEST:
                 message = f"the magnitude near {short_hertz(place)} Hz is not decided"
                 raise BudgetError(Diagnostic("SF505", message, None, "give a --band without it"))

@@ -54,6 +54,25 @@ BY_HAND = (
 )
 
 
+# By hand: functions that are largest where omega is negative, as a rotor that whirls backwards.
+BACKWARDS = (
+    ("1/(s + 2 + 30*j)", 0.5, -30),
+    ("exp(-s)/(s + 2 + 30*j)", 0.5, -30),
+    ("1/(s + 30*j)", inf, -30),
+    ("1/(s + 2 - 30*j)", 0.5, 30),
+    ("1/(s + j*3)/(s + 2 - j)", inf, -3),
+)
+
+
+@pytest.mark.parametrize(("text", "size", "omega"), BACKWARDS)
+def test_complex_coefficients_peak_at_negative_frequencies_too(text, size, omega):
+    model = symflex.Model(inputs={"u": {}}, signals={"z": f"u*({text})"}, outputs={"y": "z"})
+    peak = model.peak("y", "u")
+    assert peak.certified
+    assert holds(peak.magnitude, size) if size < inf else not peak.magnitude.is_finite()
+    assert 2 * pi * peak.frequency_hz == pytest.approx(omega, rel=1e-6)
+
+
 @pytest.mark.parametrize(("text", "size", "omega", "norm"), BY_HAND)
 def test_peaks_known_by_hand(text, size, omega, norm):
     peak = function(text).peak()
