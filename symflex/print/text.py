@@ -85,7 +85,7 @@ def _fraction_lines(
         lines += hanging(f"{INDENT}hidden: ", factor, width, f" cancelled{times}")
     if not tf.is_reduced:
         lines += [f"{INDENT}hidden modes: not examined in this representation", ""]
-    elif tf.hidden:
+    elif hidden:
         lines.append("")
     for line in form.approximation.said if form.approximation else ():
         lines += wrap(line, width, initial_indent=INDENT, subsequent_indent=INDENT * 2)

@@ -36,6 +36,7 @@ def hidden_expressions(tf: AnyTransferFunction) -> Hidden:
     """Return the cancelled factors in s with their multiplicities, kernels written out."""
     if not tf.is_reduced:
         return ()
+    tf = tf.whole
     used = tf.ring.used_in(h.polynomial for h in tf.hidden)
     if used & set(tf.kernels.generators):
         notation = notation_of(tf, used, Naming.of(tf))
@@ -53,6 +54,7 @@ def with_hidden(tf: AnyTransferFunction, form: PrintedForm) -> tuple[PrintedForm
     """Return a form with lines for the names in cancelled factors besides its own, and these factors."""
     if not tf.is_reduced:
         return form, ()
+    tf = tf.whole
     has_kernels = tf.ring.used_in(h.polynomial for h in tf.hidden) & set(tf.kernels.generators)
     if tf.model.root or not has_kernels:
         return form, hidden_expressions(tf)

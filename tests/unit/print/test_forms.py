@@ -283,6 +283,20 @@ def test_what_cancelled_prints_by_descending_powers():
     assert [(format_expression(e), m) for e, m in hidden_expressions(tf)] == [("m_2*s^2 + b*s + k", 1)]
 
 
+def test_a_factor_that_waits_is_listed_also_where_the_function_does_not_wait():
+    text = """symflex = 1
+parameters.T = "1 s"
+inputs.r = {}
+outputs.Y = "y"
+signals.y = "(1 - 2*exp(-s*T))/(s + 1)*u"
+signals.u = "(r - y)/(1 - 2*exp(-s*T))"
+"""
+    tf = tf_of(text, "Y", "r")
+    ((factor, times),) = hidden_expressions(tf)
+    assert (format_expression(factor), times) == ("2*exp(-T*s) - 1", 1)
+    assert "hidden: 2*exp(-T*s) - 1 cancelled" in derive_text([(tf, print_form(tf))])
+
+
 def test_pi_stands_before_the_parameters():
     text = TWO_MASS.replace('k = "k" }', 'k = "k*pi^2*m_1" }')
     num, _ = printed(tf_of(text, "Y", "F"), "polynomial")
