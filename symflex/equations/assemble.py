@@ -29,7 +29,6 @@ from symflex.budget import spend
 from symflex.equations.against_text import error_of
 from symflex.equations.equations import ConstantFunction, Continuum, Equations, OutputRow, radicals_of
 from symflex.equations.evaluate import (
-    Dynamics,
     ExactEvaluator,
     Opener,
     read_block,
@@ -65,6 +64,7 @@ from symflex.library.elements.line import LineElement
 from symflex.model import Model, NetworkNode, NodeReference, PlacedBlock, PlacedElement, scope_of
 from symflex.model.along import COORDINATE, is_tapered, varies_along_x
 from symflex.model.boundary import varying_constants
+from symflex.model.dynamics import Dynamics
 from symflex.model.model import INPUT_KINDS
 from symflex.model.network import variable_of
 

@@ -1,14 +1,9 @@
-"""From expressions to linear forms over the exact ring, with the subsystems they are written with.
+"""What names, calls and blocks stand for in the expressions of one model, over the exact ring.
 
-Input: an expression of a model, wherever it stands. Output: a :class:`Dynamics`: its value, and the
-product of all denominators in s along its products.
+Input: an expression of a model, wherever it stands. Output: what :mod:`symflex.model.dynamics` reads it as.
 
-    "(s - 1)*P" of a block P = 1/(s - 1)    value 1, written poles s - 1, all of which cancelled
-
-A product is a series connection of its factors, and a sum a parallel one of its terms; a subsystem that
-several terms of a sum share is one. What stands in the poles but no longer below the value is a mode that one
-side of the product does not control, or the other does not observe (Kalman 1963): a hidden mode of the model,
-not nothing. Delays count as s does: ``1 - 2 exp(-s T)`` has zeros, and what is divided by it has poles.
+    "2*k*(x - y)"    2 k x - 2 k y, a form in the unknowns x and y
+    "K*P*x" of a block P = 1/(s - 1)    K x/(s - 1), with the pole that P is written with
 """
 
 from __future__ import annotations
@@ -18,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from math import isqrt, prod
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import TYPE_CHECKING
 
 from symflex.algebra import (
     LAPLACE,
@@ -26,27 +21,18 @@ from symflex.algebra import (
     Factored,
     Radicals,
     Ring,
-    common_denominator,
     composed,
-    degree_in,
-    least_common_multiple,
     residue,
     terms_of,
 )
 from symflex.equations.against_text import compare, number_of_form
-from symflex.errors import BudgetError, Diagnostic, ModelError, Span
+from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.expressions import (
     Attribute,
     Call,
     Derivative,
     Expression,
     Name,
-    Negative,
-    Number,
-    Power,
-    Product,
-    Quotient,
-    Sum,
     format_expression,
     names,
     names_among,
@@ -55,7 +41,7 @@ from symflex.expressions import (
 from symflex.library.blocks import StateSpaceBlock
 from symflex.library.elements import LinearForm, Variable
 from symflex.model import ModelScope, PlacedBlock
-from symflex.model.linearity import factored_of
+from symflex.model.dynamics import Dynamics, ExpressionReader
 from symflex.model.model import RootOfS
 
 if TYPE_CHECKING:
@@ -65,55 +51,8 @@ OPENED_PARTS = 1_000
 OPENED_DEPTH = 200
 
 
-def transfer_of(block: PlacedBlock, values: Mapping[str, Factored]) -> Factored:
-    """Return the transfer function of a block that is no other model's, for values of s and its parameters.
-
-    Raises ZeroDivisionError.
-
-    >>> from symflex.library.blocks import BLOCKS
-    >>> from symflex.model import PlacedBlock
-    >>> ring = Ring(("s", "k"))
-    >>> values = {name: Factored.generator(ring, name) for name in ring.names}
-    >>> (transfer_of(PlacedBlock("G", BLOCKS["integrator"]), values) * values["s"] / values["k"]).is_one
-    True
-    """
-    if block.formula is None:
-        assert isinstance(block.block, StateSpaceBlock)
-        return block.block.transfer(values)
-    return factored_of(block.formula, values[LAPLACE].ring, values.__getitem__)
-
-
-Kind_co = TypeVar("Kind_co", bound="Factored | LinearForm", covariant=True)
-
-
-@dataclass(frozen=True, slots=True)
-class Dynamics(Generic[Kind_co]):
-    """What an expression is, and the subsystems it is written with."""
-
-    value: Kind_co  # of constants, or of unknowns
-    poles: Factored  # the product of denominators in s before anything cancels
-
-    @property
-    def below(self) -> Factored:
-        """The denominator of the value."""
-        if isinstance(self.value, Factored):
-            return self.value.denominator()
-        return common_denominator(self.poles.ring, self.value.coefficients)
-
-    @property
-    def hidden(self) -> Factored:
-        """The poles that cancelled above what is left below: they stay modes."""
-        below = self.below
-        return self.poles if below.is_one else least_common_multiple(below, (self.poles,)) / below
-
-    @property
-    def kept(self) -> Factored:
-        """The poles that did not cancel."""
-        return self.poles / self.hidden
-
-
 @dataclass(frozen=True)
-class ExactEvaluator:
+class ExactEvaluator(ExpressionReader):
     """Evaluates the expressions of one model."""
 
     ring: Ring  # generators: s, parameters, definitions, pi and elementary functions of constants
@@ -150,7 +89,7 @@ class ExactEvaluator:
 
     @cached_property
     def _of_constants(self) -> ExactEvaluator:
-        return replace(self, is_constant=True)
+        return self if self.is_constant else replace(self, is_constant=True)
 
     def along_x(self) -> ExactEvaluator:
         """Return the same for what may vary along x."""
@@ -162,13 +101,7 @@ class ExactEvaluator:
 
     def read_constant(self, expression: Expression) -> Dynamics[Factored]:
         """Return what an expression without unknowns is read as, with the same errors."""
-        if not self.is_constant:
-            return self._of_constants.read_constant(expression)
-        reading = self.read(expression)
-        if isinstance(reading.value, LinearForm):
-            message = f"'{format_expression(expression)}' must be constant"
-            raise ModelError(Diagnostic("SF212", message, expression.span))
-        return Dynamics(reading.value, reading.poles)
+        return ExpressionReader.read_constant(self._of_constants, expression)
 
     def linear(self, expression: Expression) -> LinearForm:
         """Return an expression of unknowns and inputs as a linear form; zero is the empty form."""
@@ -195,15 +128,15 @@ class ExactEvaluator:
 
     def number_of_leaf(self, expression: Expression) -> int:
         """Return the number a name or a call is at the point; KeyError where it has none."""
-        found = number_of_form(self._read(expression).value, self.place)
+        found = number_of_form(self.series(expression).value, self.place)
         if found is None:
             raise KeyError
         return found
 
     def read(self, expression: Expression) -> Dynamics[Factored | LinearForm]:
-        """Return what an expression of constants or of unknowns is read as: all that holds s passes here."""
+        """Return what an expression is read as, compared with its tree at the point."""
         try:
-            reading = self._read(expression)
+            reading = self.series(expression)
             value = reading.value
             if isinstance(value, LinearForm):
                 value = without_squares(value, self.radicals)
@@ -216,36 +149,11 @@ class ExactEvaluator:
             located = (replace(d, span=d.span or expression.span) for d in error.diagnostics)
             raise BudgetError(*located) from None
 
-    @cached_property
-    def one(self) -> Factored:
-        """The ring's one: the poles of what has no dynamics."""
-        return Factored.number(self.ring, 1)
-
-    def in_s(self, value: Factored) -> Factored:
-        """Return the factors that depend on s, directly or through a definition or a delay."""
-        places = [self.ring.index[name] for name in (LAPLACE, *self.varying) if name in self.ring.index]
-        return value.filter(lambda factor: any(degree_in(factor, place) for place in places))
-
-    def _read(self, expression: Expression) -> Dynamics[Factored | LinearForm]:
+    def leaf(self, expression: Expression) -> Dynamics[Factored | LinearForm]:
+        """Return what a name, a call or a derivative is."""
         match expression:
-            case Number(value):
-                return Dynamics(Factored.number(self.ring, value), self.one)
             case Name() | Attribute():
                 return self._name(expression)
-            case Negative(operand):
-                return self._times(self._read(operand), Factored.number(self.ring, -1), self.one)
-            case Sum(terms):
-                return self._sum(expression, terms)
-            case Product(factors):
-                result: Dynamics[Factored | LinearForm] = Dynamics(self.one, self.one)
-                for factor in factors:
-                    result = self._product(result, self._read(factor), expression)
-                return result
-            case Quotient(numerator, denominator):
-                inverse = self._inverse(self.read_constant(denominator), denominator.span or expression.span)
-                return self._times(self._read(numerator), inverse.value, inverse.poles)
-            case Power(base, exponent):
-                return self._power(expression, base, exponent)
             case Call(name) if name in self.fields and self.field_value is not None:
                 if expression not in self.states:
                     self.states[expression] = self.field_value(expression)
@@ -256,33 +164,6 @@ class ExactEvaluator:
                 derivative = Variable("field", name, "'" * order)
                 return Dynamics(LinearForm.of((derivative, self.one)), self.one)
         raise TypeError(f"unexpected expression {type(expression).__name__}")
-
-    def _times(
-        self, reading: Dynamics[Factored | LinearForm], factor: Factored, poles: Factored
-    ) -> Dynamics[Factored | LinearForm]:
-        """Return a reading in series with a constant; nothing is connected where the product is zero."""
-        value = reading.value * factor
-        is_zero = value.is_zero if isinstance(value, Factored) else not value.terms
-        return Dynamics(value, self.one if is_zero else reading.poles * poles)
-
-    def _product(
-        self,
-        left: Dynamics[Factored | LinearForm],
-        right: Dynamics[Factored | LinearForm],
-        expression: Expression,
-    ) -> Dynamics[Factored | LinearForm]:
-        if not isinstance(right.value, LinearForm):
-            return self._times(left, right.value, right.poles)
-        if isinstance(left.value, LinearForm):
-            raise ModelError(Diagnostic("SF222", "a product of two unknowns is not linear", expression.span))
-        return self._times(right, left.value, left.poles)
-
-    def _inverse(self, reading: Dynamics[Factored], span: Span | None) -> Dynamics[Factored]:
-        """Return one over a constant: its poles are the zeros of that, and the poles that cancelled in it."""
-        value = reading.value
-        if self.vanishes(value):
-            raise ModelError(Diagnostic("SF224", "division by zero", span))
-        return Dynamics(value**-1, self.in_s(value.numerator()) * reading.hidden)
 
     def _name(self, expression: Name | Attribute) -> Dynamics[Factored | LinearForm]:
         if expression.name in self.given:
@@ -306,30 +187,6 @@ class ExactEvaluator:
             hint += '[signals] load = "exp(-s*T)*..."'
             raise ModelError(Diagnostic("SF910", message, expression.span, hint))
         return self.blocks[name]
-
-    def _sum(self, expression: Sum, terms: tuple[Expression, ...]) -> Dynamics[Factored | LinearForm]:
-        readings = [self._read(term) for term in terms]
-        poles = least_common_multiple(self.one, (r.poles for r in readings if not r.poles.is_one))
-        forms = [r.value for r in readings if isinstance(r.value, LinearForm)]
-        constants = [r.value for r in readings if isinstance(r.value, Factored) and not r.value.is_zero]
-        if not forms:
-            return Dynamics(sum(constants, Factored.number(self.ring, 0)), poles)
-        if constants:
-            raise ModelError(Diagnostic("SF221", "the sum has a term without an unknown", expression.span))
-        return Dynamics(LinearForm.total(forms), poles)
-
-    def _power(
-        self, expression: Power, base: Expression, exponent: Expression
-    ) -> Dynamics[Factored | LinearForm]:
-        reading = self._read(base)
-        n = int(self.constant(exponent).unit)
-        if isinstance(reading.value, LinearForm):
-            if n == 1:
-                return reading
-            raise ModelError(Diagnostic("SF222", "a power of an unknown is not linear", expression.span))
-        factor = Dynamics(reading.value, reading.poles)
-        factor = self._inverse(factor, expression.span) if n < 0 else factor
-        return Dynamics(factor.value ** abs(n), factor.poles ** abs(n))
 
     def vanishes(self, value: Factored) -> bool:
         """Tell whether a value is zero, also where it only is with its definitions opened."""

@@ -7,7 +7,7 @@ A table of poles has conjugate pairs, and a filter with these poles is real: exa
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import reduce
@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING
 
 from flint import fmpz_mpoly
 
-from symflex.algebra import LAPLACE, Ring, by_powers, terms_of
-from symflex.errors import BudgetError
+from symflex.algebra import LAPLACE, Factored, Ring, by_powers, terms_of
+from symflex.errors import BudgetError, ModelError
 from symflex.expressions import (
     Attribute,
     Call,
@@ -41,7 +41,10 @@ from symflex.expressions import (
 )
 from symflex.expressions.nodes import nodes
 from symflex.library.blocks import BLOCKS
-from symflex.model.linearity import EXPONENT_LIMIT, factored_of
+from symflex.library.elements import LinearForm
+from symflex.model.boundary import depends_on_s, varying_constants
+from symflex.model.dynamics import Dynamics, ExpressionReader
+from symflex.model.linearity import EXPONENT_LIMIT
 from symflex.model.model import IMAGINARY
 
 if TYPE_CHECKING:
@@ -55,11 +58,12 @@ def with_real_values(draft: Draft) -> Draft:
     """Return a draft in which j stands only where a value, a block or a signal is not real."""
     ratios = {b.name: Quotient(*(e for _, e in b.values)) for b in draft.blocks if b.block is BLOCKS["tf"]}
     values = {d.name: d.expression for d in draft.definitions} | ratios
-    reading = _ComplexNames({})
+    varying = varying_constants(draft.definitions, draft.blocks)
+    reading = _ComplexNames({}, varying)
     while len(found := {n: e for n, e in values.items() if reading.has_unit(e)}) > len(reading.values):
-        reading = _ComplexNames(found)
+        reading = _ComplexNames(found, varying)
     settled = {n: reading.real(e) for n, e in found.items()}
-    reading = _ComplexNames({n: e for n, e in found.items() if reading.has_unit(settled[n])})
+    reading = _ComplexNames({n: e for n, e in found.items() if reading.has_unit(settled[n])}, varying)
     real = {n: e for n, e in settled.items() if n not in reading.values}
     definitions = [replace(d, expression=real.get(d.name, d.expression)) for d in draft.definitions]
     blocks = list(draft.blocks)
@@ -93,6 +97,7 @@ class _ComplexNames:
     """Definitions and blocks with j, by name."""
 
     values: Mapping[str, Expression]
+    varying: frozenset[str]  # definitions and blocks that depend on s
 
     def has_unit(self, expression: Expression) -> bool:
         """Tell whether an expression contains j, or a name that does."""
@@ -124,31 +129,38 @@ class _ComplexNames:
         return None
 
     def _expanded(self, node: Expression) -> Expression | None:
-        """Return the quotient of polynomials that an expression is, if all its coefficients are real."""
+        """Return the quotient of polynomials that an expression is, if all its coefficients are real.
+
+        What cancels in it is written above and below, as it stays a mode of the model.
+        """
         try:
-            (a, b), (c, d), leaves = self._polynomials(node)
-        except (BudgetError, TypeError, ZeroDivisionError):  # what is no rational function of its names
+            reading, leaves = self._read(node)
+            (a, b), (c, d) = map(leaves.parts, (reading.value.numerator(), reading.value.denominator()))
+            hidden, imaginary = leaves.parts(reading.hidden)
+        except (BudgetError, ModelError, TypeError, ZeroDivisionError):  # no rational function of its names
             return None
-        if not (b * c - a * d).is_zero():
+        written = c.gcd(d)
+        if not (b * c - a * d).is_zero() or not imaginary.is_zero() or leaves.vary(c / written, d / written):
             return None
         above, below = (b, d) if c.is_zero() else (a, c)
         shared = above.gcd(below)
         above, below = above / shared, below / shared
+        left = leaves.in_s(Factored.polynomial(leaves.ring, shared))
         if max(int(e) for x in (above, below) for e in x.degrees()) > EXPONENT_LIMIT:
             return None
         scale = Fraction(int(below.leading_coefficient()))
-        return quotient(leaves.expression(above, scale), leaves.expression(below, scale))
+        kept = [leaves.expression(x, ONE) for x in (hidden, left.expand()) if leaves.vary(x)]
+        return quotient(*(product_of([*kept, leaves.expression(x, scale)]) for x in (above, below)))
 
-    def _polynomials(self, node: Expression) -> tuple[_Parts, _Parts, _Leaves]:
-        """Return real and imaginary part of numerator and denominator. TypeError where there are none."""
+    def _read(self, node: Expression) -> tuple[Dynamics[Factored], _Leaves]:
+        """Return what an expression is read as with its definitions put in."""
         opened = self._opened(node)
         kinds = (Name, Attribute, Call)
-        leaves = {format_expression(n): n for n in nodes(opened) if isinstance(n, kinds)}
-        ring = Ring(tuple(dict.fromkeys((LAPLACE, IMAGINARY, *leaves))))
-
-        value = factored_of(opened, ring)
-        above, below = (_parts(ring, x.expand()) for x in (value.numerator(), value.denominator()))
-        return above, below, _Leaves(ring, leaves)
+        nodes_by_name = {format_expression(n): n for n in nodes(opened) if isinstance(n, kinds)}
+        ring = Ring(tuple(dict.fromkeys((LAPLACE, IMAGINARY, *nodes_by_name))))
+        varying = {name for name, n in nodes_by_name.items() if depends_on_s(n, self.varying)}
+        leaves = _Leaves(ring, nodes_by_name, varying)
+        return leaves.read_constant(opened), leaves
 
     def _opened(self, node: Expression) -> Expression:
         """Return an expression with its definitions put in, and ``exp(a + j*b)`` in cosine and sine."""
@@ -157,7 +169,8 @@ class _ComplexNames:
             if len(nodes(node)) > MOST_NODES:
                 raise TypeError
         for call in [n for n in nodes(node) if isinstance(n, Call) and self.has_unit(n.argument)]:
-            (a, b), (c, d), leaves = self._polynomials(call.argument)
+            reading, leaves = self._read(call.argument)
+            (a, b), (c, d) = map(leaves.parts, (reading.value.numerator(), reading.value.denominator()))
             if call.name != "exp" or not d.is_zero():
                 raise TypeError
             sign = -1 if int(b.leading_coefficient()) < 0 else 1
@@ -170,11 +183,33 @@ class _ComplexNames:
 
 
 @dataclass(frozen=True)
-class _Leaves:
-    """What the generators of a ring stand for."""
+class _Leaves(ExpressionReader):
+    """Names and calls as generators of a ring, and what they stand for."""
 
     ring: Ring
     nodes: Mapping[str, Expression]
+    varying: Collection[str]
+
+    def leaf(self, expression: Expression) -> Dynamics[Factored | LinearForm]:
+        """Return the generator of a name or a call. TypeError for what is no value, such as an equation."""
+        if not isinstance(expression, Name | Attribute | Call):
+            raise TypeError
+        return Dynamics(Factored.generator(self.ring, format_expression(expression)), self.one)
+
+    def vary(self, *polynomials: fmpz_mpoly) -> bool:
+        """Tell whether any of these depends on s."""
+        return any(not self.in_s(Factored.polynomial(self.ring, x)).is_one for x in polynomials if x)
+
+    def parts(self, polynomial: Factored) -> tuple[fmpz_mpoly, fmpz_mpoly]:
+        """Return real and imaginary part of a polynomial in j."""
+        signed = [
+            (n % 2, part * (-1 if n % 4 > 1 else 1))
+            for n, part in by_powers(self.ring, polynomial.expand(), self.ring.index[IMAGINARY]).items()
+        ]
+        real, imaginary = (
+            reduce(add, (p for n, p in signed if n == k), self.ring.constant(0)) for k in (0, 1)
+        )
+        return real, imaginary
 
     def expression(self, polynomial: fmpz_mpoly, scale: Fraction) -> Expression:
         """Return a polynomial over a number, by powers of s."""
@@ -193,16 +228,3 @@ class _Leaves:
             by_power.setdefault(exponents.get(0, 0), []).append(product_of(factors))
         s = Name(LAPLACE)
         return sum_of(product_of([sum_of(terms), power(s, n)]) for n, terms in by_power.items())
-
-
-_Parts = tuple["fmpz_mpoly", "fmpz_mpoly"]
-
-
-def _parts(ring: Ring, polynomial: fmpz_mpoly) -> _Parts:
-    """Return real and imaginary part of a polynomial in j."""
-    signed = [
-        (n % 2, part * (-1 if n % 4 > 1 else 1))
-        for n, part in by_powers(ring, polynomial, ring.index[IMAGINARY]).items()
-    ]
-    real, imaginary = (reduce(add, (p for n, p in signed if n == k), ring.constant(0)) for k in (0, 1))
-    return real, imaginary

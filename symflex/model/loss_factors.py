@@ -17,7 +17,6 @@ from symflex.algebra import LAPLACE
 from symflex.errors import Diagnostic, ModelError, Span
 from symflex.expressions import Name, Number, Product, Sum, names, names_among, number, product_of, sum_of
 from symflex.expressions.nodes import nodes
-from symflex.model.complex_values import with_real_values
 from symflex.model.model import IMAGINARY, J, Model, ModelParameter, NamedExpressions
 
 if TYPE_CHECKING:
@@ -57,6 +56,10 @@ def with_imaginary_unit(reader: Reader, draft: Draft) -> Draft:
             )
             reader.note("SF211", message, taken[IMAGINARY] or here[0], "rename what the model calls j")
         return draft
+    if here is None:
+        return draft
+    from symflex.model.complex_values import with_real_values  # loaded where j is used
+
     draft = with_real_values(draft)
     here = next(_uses(draft), None)
     if here is None or any(p.name == IMAGINARY for p in draft.inherited):

@@ -10,8 +10,7 @@ Over one denominator the numerator of such a modal sum grows with the square of 
 
 from __future__ import annotations
 
-from symflex.algebra import LAPLACE, Factored, Ring
-from symflex.equations.evaluate import transfer_of
+from symflex.algebra import LAPLACE, Ring
 from symflex.expressions import (
     FUNCTIONS,
     Call,
@@ -26,6 +25,7 @@ from symflex.expressions import (
     substitute,
 )
 from symflex.model import PlacedBlock
+from symflex.model.linearity import factored_of
 from symflex.print.forms.arrange import Arranger, ProductPrinter
 from symflex.print.forms.printed import PrintedForm
 from symflex.print.forms.shapes import of_powers, plain, powers_of
@@ -69,8 +69,9 @@ def _opened(placed: PlacedBlock) -> Expression:
     """Return a block's transfer function in its values, which may contain earlier blocks."""
     values = dict(placed.values)
     assert placed.block is not None
+    assert placed.formula is not None
     if placed.block.kernel_time:
         return Call("exp", negative(product_of([values[placed.block.kernel_time], Name(LAPLACE)])))
     ring = Ring((LAPLACE, *values))
-    transfer = transfer_of(placed, {name: Factored.generator(ring, name) for name in ring.names})
+    transfer = factored_of(placed.formula, ring)
     return substitute(ProductPrinter(Arranger.plain(ring)).quotient(transfer), values)

@@ -176,6 +176,60 @@ Y = "r"
     assert np.allclose(values(found.poles), expected)
 
 
+# Around s = 1, conjugate pairs with the poles -2 + 3j and -2 - 3j: what cancels is a mode.
+LEFT, RIGHT = "(s - 1)/(s + 2 + 3*j)", "1/((s - 1)*(s + 2 - 3*j))"
+SHIFTED = {"p": "-2 + 3*j", "q": "-2 - 3*j", "a": "1/(1 - p)", "b": "1/(1 - q)"}
+CANCELLED = {
+    "in a signal": {"signals": {"y": f"{LEFT}*({RIGHT})*v"}, "output": "y"},
+    "in an output": {"output": f"{LEFT}*({RIGHT})*v"},
+    "of two definitions": {"definitions": {"C": LEFT, "P": RIGHT}, "output": "P*C*v"},
+    "of two blocks": {"blocks": {"C": LEFT, "P": RIGHT}, "output": "P*C*v"},
+    "in a block": {"blocks": {"H": f"{LEFT}*({RIGHT})"}},
+    "in numerator and denominator": {
+        "blocks": {"H": {"num": f"({LEFT})*({RIGHT})*(s - 1)", "den": "s - 1"}},
+    },
+    "in a factor of both": {
+        "definitions": {"Q": "s - 1", "C": "Q/(s + 2 + 3*j)", "P": "1/(Q*(s + 2 - 3*j))"},
+        "output": "P*C*v",
+    },
+    "by addition": {
+        "definitions": SHIFTED,
+        "output": "v*(1/((s - 1)*(s - p)) - a/(s - 1) + 1/((s - 1)*(s - q)) - b/(s - 1))",
+    },
+}
+
+
+@pytest.mark.parametrize("where", CANCELLED)
+def test_what_cancels_beside_a_conjugate_pair_is_hidden(where):
+    made = model(**CANCELLED[where])
+    assert made.imaginary is None
+    _, found = located(made)
+    assert np.allclose(values(found.poles), [-2 - 3j, -2 + 3j])
+    assert {round(complex(h.root).real, 6) for h in found.hidden} == {1}
+    assert found.verdict.word == "unstable"
+
+
+def test_a_pair_that_cancels_is_hidden_and_half_a_pair_leaves_a_model_complex():
+    pair = {"definitions": PAIR, "output": "v*(s - p)*(s - q)/((s - p)*(s - q)*(s + 3))"}
+    _, found = located(model(**pair))
+    assert np.allclose(
+        sorted((complex(h.root) for h in found.hidden), key=lambda z: z.imag), [-3 - 4j, -3 + 4j]
+    )
+    assert model(definitions=PAIR, output="v*(s - p)/((s - p)*(s + 3))").imaginary is not None
+
+
+def test_a_constant_that_cancels_and_what_terms_share_hide_nothing():
+    shared = "v/(s^2 + 6*s + 25) + v/(s - p) + v/(s - q)"
+    for given in [
+        {"definitions": PAIR, "parameters": {"R": "2"}, "output": "R*v/((s - p)*(s - q)*R)"},
+        {"definitions": PAIR, "output": "(1 + 2*j)*v/((s - p)*(s - q)*(1 + 2*j))"},
+        {"definitions": PAIR, "output": shared},
+    ]:
+        _, found = located(model(**given))
+        assert np.allclose(values(found.poles), [-3 - 4j, -3 + 4j]), given
+        assert not found.hidden, given
+
+
 def test_loss_factors_stay_loss_factors_beside_real_filters():
     spring = """
 symflex = 1
