@@ -3,7 +3,7 @@
 Input: the expressions of definitions, the numbers of parameters. Output: the value of an expression in balls,
 with random numbers for names that have none, whether it is zero whatever the names are, and its sign.
 
-    sqrt(b^2) - b    is zero for positive b; one of three random b finds that it is not for others
+    sqrt(b^2) - b    is zero for positive b; one of sixteen random b finds that it is not for others
     x_0 - 2          has the sign -1 with x_0 = 1; x_0 + 2 has 1 for every positive x_0
 """
 
@@ -34,15 +34,16 @@ from symflex.expressions import (
 from symflex.model.units import exact_expression, lower
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
     from symflex.model.declarations import DeclaredParameter
     from symflex.model.model import ModelParameter
 
     Signs = tuple[int, int]  # the least and the largest sign that a value may have: (0, 1) is not negative
 
-TRIALS = 200  # random points, of which three are to be in the domain of all functions
-AGREEING = 3
+TRIALS = 200  # random points, of which so many are to be in the domain of all functions
+AGREEING = 16  # or a root whose sign depends on one sum in four would pass for one that has a sign
+SCALES = (-40, 40), (0, 1e-6)  # doublings of declared values: anywhere, and near them
 BITS = 256
 ANY: Signs = (-1, 1)
 POSITIVE: Signs = (1, 1)
@@ -78,7 +79,7 @@ class Constants:
                     raise KeyError(name)
                 sign = 1 if random is None or name not in self.signed else random.choice((-1, 1))
                 known[name] = (
-                    sign * arb(random.randrange(1, 1 << 20)) / (1 << random.randrange(18, 26))
+                    sign * arb(random.randrange(1, 1 << 20)) / (1 << random.randrange(16, 26))
                     if defined is None and random
                     else self.value(lower(defined or number(0)), known, random)
                 )
@@ -105,12 +106,33 @@ class Constants:
 
     def vanishes(self, residual: Expression, fixed: Mapping[str, arb] | None = None) -> bool:
         """Tell whether an expression is zero for all values but those fixed, or with probability 0 is not."""
+        return self._vanishes(residual, lambda _: dict(fixed or {}))
+
+    def deciding(self, residual: Expression) -> set[str] | None:
+        """Return the parameters whose values make an expression zero, a root having one sign only near them.
+
+        None if it is not zero near the declared values either.
+        """
+        names = self.behind(residual) & self.known.keys()
+
+        def scaled(kept: Collection[str]) -> Callable[[Random], dict[str, arb]]:
+            def draw(random: Random) -> dict[str, arb]:
+                return {p: self.known[p] * arb(2) ** random.uniform(*SCALES[p in kept]) for p in names}
+
+            return draw
+
+        if not self._vanishes(residual, scaled(names)):
+            return None
+        own = {p for p in names if not self._vanishes(residual, scaled(names - {p}))}
+        return own if self._vanishes(residual, scaled(own)) else names
+
+    def _vanishes(self, residual: Expression, values: Callable[[Random], dict[str, arb]]) -> bool:
         if is_number(residual, 0):
             return True
         random, agreeing = Random(1), 0
         for _ in range(TRIALS):
             with precision(BITS):
-                value = self.value(residual, dict(fixed or {}), random)
+                value = self.value(residual, values(random), random)
                 if value.is_finite() and not value.contains(0):
                     return False
                 agreeing += bool(value.is_finite())

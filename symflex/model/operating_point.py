@@ -189,7 +189,7 @@ def linearised(
             point.check_constraints(equations, is_solved=True)
     if reader.problems:
         raise SpecError(*reader.problems)
-    kept = tuple(replace(x, expression=made.get(x.name) or x.expression) for x in signals)
+    kept = tuple(replace(x, expression=point.with_calls(made.get(x.name)) or x.expression) for x in signals)
     return kept, point.definitions, point.described(equations, made), point.by_value
 
 
@@ -236,6 +236,7 @@ class _AboutRest:
             (*rest.solve, *rest.multipliers)
         )
         self.left_over: list[Left] = []
+        self.calls: Mapping[Expression, Expression] = {}  # what functions that were inverted are at rest
         self.seen: set[str] = set()
         self.signals: dict[str, Expression] = {}  # explicit ones, and rates, which follow from the others
         rates = {n: v for n, v in rest.values.items() if n.endswith("'") and not is_number(v, 0)}
@@ -308,6 +309,12 @@ class _AboutRest:
                 left, right = [negative(t) for t in left], [negative(t) for t in right]
             return Equation(sum_of(left), sum_of(right), span=equation.span)
         return None
+
+    def with_calls(self, linear: Equation | None) -> Equation | None:
+        """Return an equation with what was solved for in place of functions of it: sqrt(h_0) is q_0/a."""
+        return linear and Equation(
+            *(replace_values(e, self.calls) for e in linear.children), span=linear.span
+        )
 
     def check_domain(self) -> None:
         """Note what has no value with the values at rest: a quotient by zero, a logarithm or root."""
@@ -451,7 +458,7 @@ class _AboutRest:
         self.definitions += solving.definitions
         self.by_value = solving.by_value
         self.used |= solving.used
-        self.found = tuple(solving.found)
+        self.found, self.calls = tuple(solving.found), solving.calls
         if not self.reader.problems:
             self.check_domain()
         for made in () if self.reader.problems else solving.definitions:
@@ -465,6 +472,8 @@ class _AboutRest:
                 continue
             if self.constants.vanishes(each.residual, numbers):
                 self.used |= self.constants.behind(each.residual) & {*numbers}
+            elif (deciding := self.constants.deciding(each.residual)) is not None:
+                self.used |= deciding
             else:
                 self._note_left(each)
         for name in missing:

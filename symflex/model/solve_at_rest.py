@@ -41,6 +41,7 @@ from symflex.expressions import (
     product_of,
     quotient,
     replace_node,
+    replace_values,
     sum_of,
 )
 from symflex.expressions.derivative import derivative, simplified
@@ -117,6 +118,7 @@ class Solving:
     by_value: dict[str, Fraction] = field(default_factory=dict)
     used: set[str] = field(default_factory=set)  # names whose values were used
     found: list[FoundValue] = field(default_factory=list)
+    calls: dict[Expression, Expression] = field(default_factory=dict)  # what inverted functions are at rest
     _boxes: dict[str, arb] = field(default_factory=dict)  # of what was solved by value
 
     def solve(self, left: Sequence[Left], names: Sequence[str]) -> tuple[list[Left], list[str]]:
@@ -138,6 +140,8 @@ class Solving:
             wanted.remove(unknown)
             self.constants.expressions[unknown] = solution
             self.definitions.append(Definition(unknown, solution, "", row.equation.span))
+            if (pair := _one_call(row.residual, unknown, [unknown, *wanted])) is not None:
+                self.calls |= {pair[0]: replace_values(pair[1], self.calls)}
             formulas.append((unknown, row))
             values = {unknown: solution} if min(others) else {}
             rows = [replace(r, residual=simplified(r.residual, values)) for r in rows if r is not row]
@@ -161,7 +165,11 @@ class Solving:
         if (formula := _inverted(residual, unknown, wanted)) is None:
             return None
         # A root has one sign, and an arctangent does not take every value.
-        return formula if self.constants.vanishes(simplified(residual, {unknown: formula})) else None
+        deciding = self.constants.deciding(simplified(residual, {unknown: formula}))
+        if deciding is None:
+            return None
+        self.used |= deciding
+        return formula
 
     def _found(self, name: str, start: arb | None) -> FoundValue | None:
         """Return a value beside the declared one; None without a value."""
@@ -416,6 +424,15 @@ def _solved(residual: Expression, unknown: str, wanted: Collection[str]) -> Expr
 
 def _inverted(residual: Expression, unknown: str, wanted: Collection[str]) -> Expression | None:
     """Return a formula for an unknown that occurs in the argument of one function only."""
+    if (found := _one_call(residual, unknown, wanted)) is None:
+        return None
+    call, value = found
+    inner = sum_of([call.argument, negative(INVERSES[call.name](value))])
+    return _solved(inner, unknown, wanted)
+
+
+def _one_call(residual: Expression, unknown: str, wanted: Collection[str]) -> tuple[Call, Expression] | None:
+    """Return the only function that has an unknown in its argument, and its value at rest."""
     calls = [n for n in nodes(residual) if isinstance(n, Call) and Name(unknown) in nodes(n.argument)]
     if not calls or calls[0].name not in INVERSES:
         return None
@@ -423,8 +440,7 @@ def _inverted(residual: Expression, unknown: str, wanted: Collection[str]) -> Ex
     value = _solved(replace_node(residual, calls[0], whole), whole.name, [*wanted, whole.name])
     if value is None or Name(unknown) in nodes(value) or isinstance(value, Call):
         return None
-    inner = sum_of([calls[0].argument, negative(INVERSES[calls[0].name](value))])
-    return _solved(inner, unknown, wanted)
+    return calls[0], value
 
 
 def _without_factor(left: Left, wanted: Collection[str], may_vanish: Collection[str]) -> Left:

@@ -11,7 +11,7 @@ import pytest
 
 from symflex import loads as load
 from symflex.cli import run
-from symflex.errors import SpecError
+from symflex.errors import ModelError, SpecError
 from symflex.pipeline import loads
 
 ACTUATOR = {  # k x = eps A V^2/(2 (d - x)^2), in three spellings
@@ -167,6 +167,36 @@ def test_a_value_that_is_assumed_positive_does_not_become_zero_or_negative():
     assert "assumed positive" in message
     assert listed["x_0"] == [0, pytest.approx(2.2788627, rel=1e-5)]  # mpmath.findroot of 0.2 q = 0.6 sin q
     assert _solved(text.replace("x_0 = 0.3", 'x_0 = { value = 0.3, assume = "real" }'))["x_0"] == 0
+
+
+TANK = {"A": 2, "a": 0.001, "g": 9.81, "q_0": 0.005, "w_0": 0.001}
+
+
+def _tank(**values):
+    rest = {"q": "q_0", "w": "w_0"}
+    return _text(TANK | values, ["h"], ["A*h' = q - w - a*sqrt(2*g*h)"], rest, ["h"], ["q", "w"])
+
+
+def test_a_root_that_has_one_sign_near_the_declared_values_is_solved_there_alone():
+    # Torricelli: sqrt(2 g h) = (q - w)/a while q > w
+    assert _solved(_tank())["h_0"] == pytest.approx((4**2) / (2 * 9.81), rel=1e-12)
+    for w_0 in (0.006, 0.5):
+        assert _refused(_tank(w_0=w_0))[1] == {}
+    for name in ("q_0", "w_0"):
+        with pytest.raises(ModelError, match="would not follow it"):
+            load(_tank()).stability(over=name)
+    assert load(_tank()).stability(over="g").certified
+    given = _text(TANK, ["h"], ["A*h' = q - w - a*sqrt(2*g*h)"],
+                  {"q": "q_0", "w": "w_0", "h": "((q_0 - w_0)/a)^2/(2*g)"}, [], ["q", "w"])  # fmt: skip
+    assert "h" in dict(loads(given).operating_point.values)
+    assert _refused(given.replace("w_0 = 0.001", "w_0 = 0.006"))
+
+
+def test_formulas_have_what_a_function_is_at_rest_in_its_place():
+    # A h' = q - w - a sqrt(2 g h): the slope is a g/sqrt(2 g h) = a^2 g/(q - w).
+    tf = load(_tank()).transfer_function("Y/q")
+    assert "sqrt" not in str(tf)
+    assert complex(tf.bind()(0)) == pytest.approx(0.004 / (0.001**2 * 9.81))
 
 
 CHEMOSTAT = ["X' = m*S/(k + S)*X - D*X", "S' = D*(f - S) - m*S/(k + S)*X/Y"]
