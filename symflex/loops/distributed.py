@@ -38,7 +38,7 @@ from symflex.roots.functions.simplified import without_squares
 from symflex.roots.passivity import EnergyProof, energy_proof
 from symflex.roots.pole_zero_map import count_right, is_right
 from symflex.roots.root import Root, count_roots, exact_fraction
-from symflex.roots.sheets import on_sheet
+from symflex.roots.sheets import growing, on_sheet
 from symflex.transfer import BoundTransferFunction
 from symflex.transfer.enclose import first_order
 
@@ -407,8 +407,12 @@ class DistributedFactors(AxisSearch):
 
 def _right_but(points: DegeneratePoints, side: Side, circle: float) -> int:
     """Return the poles on the right up to a circle, without roots of the formula where wavenumbers meet."""
-    found = search_right(side, (), 0.0, circle)
-    poles = [root for root in found.roots if not points.is_spurious(root, is_hidden=False)]
-    if reason := found.unproved or points.unproved:
+    if side.bound.sheets > 1:
+        poles, reason = growing(side, points, (), is_hidden=False)
+    else:
+        found = search_right(side, (), 0.0, circle)
+        poles = [root for root in found.roots if not points.is_spurious(root, is_hidden=False)]
+        reason = found.unproved or points.unproved
+    if reason:
         raise UncertifiedError(Diagnostic("SF802", reason))
     return count_right(poles)

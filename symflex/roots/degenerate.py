@@ -108,7 +108,12 @@ class DegeneratePoints:
         """Return how many poles and hidden modes the equations have at a point, ``None`` if not known."""
         place = complex(float(point.re.mid()), abs(float(point.im.mid())))
         if place not in self._counts and self.bound.is_of_model:
-            den, num = (None, None) if self._cramer is None else roots_about(self._cramer, point.enclosure())
+            den, num = (None, None)
+            if self._cramer is not None:
+                with precision(point.working_bits()):
+                    branch, s = self.bound.branch, point.enclosure()
+                    s = branch(s) if branch is not None and self.bound.variable == "s" else s
+                den, num = roots_about(self._cramer, s)
             num = den if self.bound.ratio.is_zero else num if den else 0
             counts = None if den is None or num is None else (max(den - num, 0), min(den, num))
             self._counts[place] = counts
@@ -122,7 +127,8 @@ class DegeneratePoints:
         bound, source = self.bound, self.bound.source
         if is_tapered(source.model):
             return None
-        equations = assemble_sparse(with_numbers(source.model, (), dict(bound.values), in_kernels=True))
+        model = with_numbers(source.model, (), dict(bound.values), in_kernels=True)
+        equations = assemble_sparse(model, are_for_values=True)
         return CramerEquations.of(equations, source.output.name, source.input.name)
 
 

@@ -104,8 +104,8 @@ def _locate_seen(
     region: Region | None,
     digits: int,
     *,
-    with_zeros: bool,
-    judged: PoleZeroMap | None,
+    with_zeros: bool = True,
+    judged: PoleZeroMap | None = None,
 ) -> PoleZeroMap:
     """Find poles and zeros, and hidden modes as far as the function's ring holds them."""
     bound = without_lengths_of_zero(bound)
@@ -113,12 +113,13 @@ def _locate_seen(
         if IMAGINARY in bound.ratio.ring.index:
             check_causal(bound.source.model, "a search on the sheets of a root of s")
         where, is_default = _region_of(bound, region)
-        return replace(locate_on_sheet(bound, where, digits, locate), is_default_region=is_default)
+        return replace(locate_on_sheet(bound, where, digits, _locate_seen), is_default_region=is_default)
     if IMAGINARY in bound.ratio.ring.index:
         return locate_lossy(bound, _region_of(bound, region)[0], digits, locate_distributed)
     if not bound.is_rational:
         located = locate_distributed(bound, region, digits, with_zeros=with_zeros, judged=judged)
-        if located.certificate.reason != TOUCHING or not (bound.values and bound.is_of_model):
+        is_whole = bound.values and bound.is_of_model and bound.variable == "model"
+        if located.certificate.reason != TOUCHING or not is_whole:
             return located
         # Lengths whose values are multiples share their kernels once they are numbers.
         again = locate_distributed(of_numbers(bound), region, digits, with_zeros=with_zeros, judged=judged)
@@ -424,7 +425,7 @@ class _Searched:
         product = cancelled(bound)
         poles = [] if bound.ratio.is_zero else [(0, bound.den)]
         coincident = self._points.coincident_elsewhere(self.hidden)
-        energy = energy_of(bound) if bound.is_of_model else EnergyProof()
+        energy = energy_of(bound) if bound.is_of_model and bound.variable == "model" else EnergyProof()
         proof, rests = (energy.reason, energy.rests) if energy.is_passive else ("", False)
         if before is not None and before.certificate.certified and not proof:
             return before.verdict, before.all_poles, tuple(h.root for h in before.hidden)

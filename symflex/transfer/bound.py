@@ -136,7 +136,8 @@ class BoundTransferFunction:
     kernels: KernelTable = NO_KERNELS  # of distributed parts, after the constants in the ring
     parts: tuple[Factored, Factored] | None = None  # of a distributed system, :attr:`num` and :attr:`den`
     is_of_model: bool = True  # its poles are those of the source's model; not so of a loop gain
-    is_of_s: bool = True  # a root of s that stands in place of s is one; else it is the variable itself
+    # What the ring's s is: the model's, in whose place a root of s may stand; that root itself, or s itself.
+    variable: Literal["model", "root", "s"] = "model"
     fixed: tuple[tuple[str, Callable[[], arb]], ...] = ()  # constants that waves without inertia came down to
     symbolic: TransferFunction | None = None  # with all parameters, where numbers stood for some
 
@@ -248,7 +249,7 @@ class BoundTransferFunction:
     def sheets(self) -> int:
         """Q where a root ``(s + c)^(1/q)`` stands in place of s; 1 where s does."""
         root = self.source.model.root
-        return root.order if root is not None and self.is_of_s else 1
+        return root.order if root is not None and self.variable == "model" else 1
 
     def in_root(self, size: float) -> float:
         """Return the largest ``abs(r)`` of a root of s up to an ``abs(s)`` [rad/s]; that without one."""
@@ -268,8 +269,13 @@ class BoundTransferFunction:
     @property
     def root(self) -> BoundRoot | None:
         """The root of s that stands in place of s, at the current precision."""
+        return self.branch if self.variable == "model" else None
+
+    @property
+    def branch(self) -> BoundRoot | None:
+        """The root of s that the model's equations have in place of s, at the current precision."""
         root = self.source.model.root
-        if root is None or not self.is_of_s:
+        if root is None:
             return None
         values = {name: enclosure(value) for name, value in self.all_values}
         return BoundRoot(later(root.slope, values)(), later(root.shift, values)(), root.order)

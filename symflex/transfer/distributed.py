@@ -175,6 +175,8 @@ class KernelReduction:
 
     def _lowest(self, above: Factored, below: Factored, before: Factored) -> tuple[Factored, Factored]:
         """Return a quotient with common factors cancelled, and these times what was cancelled before."""
+        # Parameters that follow from wavenumbers have left denominators, which are no part of what is shared.
+        above, below = (cancel(v.numerator(), v.denominator())[0] for v in (above, below))
         quotient, shared = cancel(above, below)
         shared, _ = cancel((shared * before).numerator(), before.denominator())
         quotient, shared = (_split_contents(v, self.coordinates.split) for v in (quotient, shared))

@@ -128,9 +128,12 @@ def followed_along_x(tf: TransferFunction) -> TransferFunction:
     return derived
 
 
-def assemble_sparse(model: Model) -> Equations:
-    """Return sparse equations for the nested form; SF910 with coefficients along x, or roots of s."""
-    if _is_expanded(model):
+def assemble_sparse(model: Model, *, are_for_values: bool = False) -> Equations:
+    """Return sparse equations for the nested form; SF910 with coefficients along x, or roots of s.
+
+    If they ``are_for_values``, a root may stand in place of s.
+    """
+    if _is_expanded(model) and not (are_for_values and not is_tapered(model)):
         reason = "with roots of s" if model.root else "where coefficients vary along x"
         message = f"the nested form of networks is not available yet {reason}"
         raise ModelError(Diagnostic("SF910", message, None, "ask for the expanded representation"))

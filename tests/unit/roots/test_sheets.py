@@ -186,3 +186,66 @@ outputs.Y = "y"
 """)
     assert [complex(root) for root in found.poles] == [-1]
     assert [complex(mode.root) for mode in found.hidden] == [-2]
+
+
+WAVES = """symflex = 1
+parameters = {{ k = "4 N/m^2", T = "1 s", eta = "0.5 s" }}
+signals.u = "{signal}"
+inputs.F = {{}}
+outputs.Y = "{output}"
+[elements]
+{elements}
+act = {{ type = "force_source", at = "{output}", f = "u" }}
+"""
+ROD_OF_2_N = 'arm = {{ type = "rod", between = ["a", "x"], EA = "2 N", rhoA = "1 kg/m", l = "1 m", {} }}'
+HELD = 'end = { type = "fixed", at = "a" }'
+SIGNALS = ("F/(1 + sqrt(s*T))", "F*sqrt(s*T + 3)/(1 + s*T)", "F/(s*T)^(1/3)")
+
+
+def waves(elements, signal, output="x", region=None):
+    return located(WAVES.format(elements="\n".join(elements), signal=signal, output=output), region)
+
+
+def rod_s_poles(added, damping):
+    """Return the roots of s^2 + 2 ((n + 1/2) pi)^2 (1 + damping s) + added: of a rod held at one end."""
+    squares = [2 * ((n + 0.5) * np.pi) ** 2 for n in range(8)]
+    top, below = added
+    return [
+        r for a in squares for r in np.roots(np.polyadd(np.polymul(below, [1, damping * a, a]), top))
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("signal", SIGNALS)
+def test_waves_in_s_beside_a_root_of_s_have_the_poles_they_have_alone(signal):
+    # where 1 + eta s = 0, at -2, or 1 + s T = 0, at -1, waves have no frequency, and the model no pole
+    laws = {
+        "eta = 'eta'": (([0], [1]), 0.5),
+        "c_f = 'k*T/(1 + s*T)'": (([4, 0], [1, 1]), 0),
+        "k_f = 'k/(2 + s*T)^2'": (([4], [1, 4, 4]), 0),
+    }
+    for law, coefficients in laws.items():
+        found = waves((ROD_OF_2_N.format(law.replace("'", '"')), HELD), signal, region=Modes(2))
+        expected = np.array(rod_s_poles(*coefficients))
+        assert found.certificate.certified, law
+        shown = [complex(r) for r in found.poles if abs(complex(r)) > 1e-9 and abs(complex(r) + 1) > 1e-9]
+        assert shown, law
+        assert all(min(abs(expected - pole)) < 1e-9 for pole in shown), law
+        assert len(set(np.round(shown, 6))) == len(shown), law
+        assert (found.verdict.word == "unstable") == bool(max(expected.real) > 1e-9), law
+
+
+@pytest.mark.parametrize(
+    "signal", ["F/(1 + sqrt(s*T))", pytest.param("F - k*L*sqrt(s*T)*x.y", marks=pytest.mark.slow)]
+)
+def test_where_waves_vanish_beside_a_root_of_s_the_equations_say_which_poles_there_are(signal):
+    # A rod on a hinge that stays straight: s^2 + 4 (s - 3) = (s - 2) (s + 6), both poles seen and simple.
+    beam = (
+        'arm = { type = "beam", between = ["a", "x"], EI = "2 N*m^2", rhoA = "1 kg/m", l = "1 m", '
+        'eta = "eta", k_f = "k*(s*T - 3)" }'
+    )
+    text = WAVES.format(elements=f'{beam}\nend = {{ type = "pin", at = "a" }}', signal=signal, output="x.y")
+    found = located(text.replace("eta =", 'L = "0.25 m", eta =', 1), Modes(2))
+    assert found.hidden == ()
+    assert found.verdict.sentence == "unstable: 1 pole in the right half-plane"
+    if "x.y" not in signal:
+        assert [(complex(r), r.multiplicity) for r in found.poles[:2]] == [(2, 1), (-6, 1)]
