@@ -190,5 +190,6 @@ def lossless_line(line: PlacedCard) -> None:
         "equations  = " + texts((f"{v}' = {times}*{i}", f"{i}' = {over}*{v}")),
         "conditions = " + texts((f"{v}(0) = {one}", f"{v}(1) = {two}")),
     ]
-    line.source(line.element("_1"), (a, b), f"{i}(0)", is_voltage=False)
-    line.source(line.element("_2"), (d, c), f"{i}(1)", is_voltage=False)
+    for suffix, ends, current in (("_1", (a, b), f"{i}(0)"), ("_2", (d, c), f"{i}(1)")):
+        if ends[0] != ends[1]:  # not a short circuit, as at the end of a stub
+            line.source(line.element(suffix), ends, current, is_voltage=False)

@@ -219,5 +219,7 @@ def exactly(digits: str, suffix: str) -> Fraction:
 
 def difference(nodes: Sequence[str]) -> Expression:
     """Return the voltage of a node, or between two."""
+    if len({*nodes}) < len(nodes):
+        return number(0)
     one, *other = (number(0) if n == "ground" else Name(n) for n in nodes)
     return sum_of([one, *map(negative, other)])

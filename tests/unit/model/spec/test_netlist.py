@@ -107,6 +107,15 @@ def test_a_lossless_line_has_the_transfer_function_of_the_textbook(tmp_path):
     assert "cosh" in str(loaded(tmp_path, line).transfer_function("V_out/V1"))
 
 
+def test_a_shorted_stub_has_the_impedance_of_the_textbook(tmp_path):
+    # Z0*tanh(s*TD) behind R1; Pozar 2011, section 2.3
+    s = 3e5 + 2e6j
+    stub = 75 * cmath.tanh(s * 1e-6)
+    for ends in ("out 0 0 0", "out 0 x x", "0 0 out 0"):
+        body = f"R1 in out 50\nT1 {ends} Z0=75 TD=1u\n.print ac v(out)"
+        assert value(tmp_path, body, s=s) == pytest.approx(stub / (50 + stub), rel=1e-12), ends
+
+
 def test_windings_in_series_have_no_loose_end(tmp_path):
     body = "R1 in out 10\nL1 out q 1m\nL2 q 0 1m\nK1 L1 L2 0.3\n.print ac v(out)"
     assert loaded(tmp_path, body).warnings == ()
