@@ -31,7 +31,7 @@ import numpy as np
 import numpy.typing as npt
 from flint import acb
 
-from symflex.budget import spend
+from symflex.balls import Open, branch
 from symflex.errors import Diagnostic, SymflexError, UncertifiedError, UsageError, refused
 from symflex.model.loss_factors import check_causal
 from symflex.roots import Band, Certificate, Everything, PoleZeroMap, Root
@@ -88,6 +88,7 @@ SHORTEST_SHARE = 1e-6
 ROUNDING = 1e-14  # relative, by which frequencies may leave the band that they were made for
 
 Point = tuple[complex, "Sample"]
+Step = tuple[Point, Point]
 
 
 def follow_phase(
@@ -171,20 +172,19 @@ class _Walk:
         self, points: Sequence[Point], shortest: float, past: Callable[[Point, Point], float]
     ) -> float:
         """Return the change along a path, divided until no step is ambiguous; ``past`` takes the shortest."""
-        total, pending = 0.0, list(pairwise(points))
-        while pending:
-            spend()
-            a, b = pending.pop()
+
+        def change(step: Step) -> float | Open[Step]:
+            a, b = step
             change = continuous_step(a[1], b[1], b[0] - a[0])
-            if change is not None:
-                total += change
-                continue
-            middle = self._clear([(a[0] + b[0]) / 2])
-            if middle and abs(b[0] - a[0]) > shortest:
-                pending += [(a, middle[0]), (middle[0], b)]
-            else:
-                total += past(a, b)
-        return total
+            return Open(step) if change is None else change
+
+        def halves(step: Step) -> list[Step]:
+            a, b = step
+            middle = self._clear([(a[0] + b[0]) / 2]) if abs(b[0] - a[0]) > shortest else []
+            return [(a, middle[0]), (middle[0], b)] if middle else []
+
+        search = branch(pairwise(points), change, halves)
+        return sum(search.decided) + sum(past(*step) for step in search.undecided)
 
     def _clear(self, points: Sequence[complex]) -> list[Point]:
         """Return the points that are not roots, with their samples."""
@@ -538,6 +538,7 @@ def _followed(
     """Return a grid with points added where a straight line misses the logarithm of the values between."""
     by_frequency = dict(zip(grid.tolist(), values(grid).tolist(), strict=True))
     pending = list(pairwise(grid.tolist()))
+    # Whole rounds at once: numpy evaluates arrays, and no proof hangs on these points.
     for _ in range(FOLLOWING_ROUNDS):
         middles = np.array([(a * b) ** 0.5 for a, b in pending])
         between = values(middles).tolist()

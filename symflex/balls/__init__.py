@@ -1,8 +1,18 @@
 """Balls: numbers that contain what is meant, and how sharp they are. Every proof stands on this package."""
 
+from symflex.balls.branching import Branching, Open, branch
 from symflex.balls.covering import covered
 from symflex.balls.elimination import Eliminated, columns_of, eliminate
-from symflex.balls.interval_newton import narrowed, stays_inside
+from symflex.balls.interval_newton import (
+    NEWTON_STEPS,
+    STALLED,
+    Pair,
+    narrowed,
+    newton_box,
+    status_of,
+    stays_inside,
+    two_steps,
+)
 from symflex.balls.precision import (
     UndecidedError,
     bits_for_digits,

@@ -7,7 +7,7 @@ its sign; else it is halved. Near 0, where wavenumbers vanish, power series with
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
@@ -17,7 +17,7 @@ from typing import TypeVar
 from flint import acb, arb, fmpz_mpoly
 
 from symflex.algebra import Factored
-from symflex.balls import ball, bits_for_digits, narrowed, precision
+from symflex.balls import NEWTON_STEPS, STALLED, Open, ball, bits_for_digits, branch, narrowed, precision
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, SymflexError
 from symflex.model.model import IMAGINARY
@@ -30,11 +30,9 @@ BITS = 96  # of intervals, whose ends are doubles
 FIRST_RATIO = 1.25  # of the ends of the first intervals
 NARROWEST = 1e-11  # relative width of an interval that is not halved any more
 MOST_INTERVALS = 40_000  # of one search, before it is given up
-NEWTON_STEPS = 60  # each nearly doubles the digits, so that few are ever taken
-STALLED = 0.99  # share of an enclosure that the last step leaves
-
 
 Place = TypeVar("Place")
+Span = tuple[float, float]  # an interval of frequencies [rad/s]
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +47,7 @@ def find_on_axis(
     on: Callable[[arb, int], tuple[Place, Place]],
     equation: Callable[[Place], tuple[arb, arb]],
     is_excluded: Callable[[Place], bool],
-    limits: tuple[float, float],
+    limits: Span,
     digits: int,
     most: int = 0,
 ) -> AxisRoots:
@@ -57,49 +55,55 @@ def find_on_axis(
 
     ``equation`` returns value and derivative; what is left after ``most`` intervals is undecided, else SF505.
     """
-    pending = pieces(*limits, FIRST_RATIO)
-    roots: list[arb] = []
-    undecided: list[arb] = []
-    for _ in range(most or MOST_INTERVALS):
-        if not pending:
-            return AxisRoots(tuple(roots), joined(undecided))
-        spend()
-        start, end = pending.pop()
-        with precision(BITS):
-            ball = (arb(start) + arb(end)) / 2 + arb(0, ((arb(end) - arb(start)) / 2).upper())
+
+    def decide(ends: Span) -> arb | Open[Span] | None:
+        ball = ball_of(ends)
         around, centre = on(ball, BITS)
         with precision(BITS):
             if is_excluded(around):
-                continue
+                return None
             value, slope = equation(around)
             middle, _ = equation(centre)
             mean = middle + slope * (ball - ball.mid())
             if value != 0 or mean != 0:
-                continue
+                return None
             if slope != 0:
-                ends = [equation(on(arb(x), BITS)[1])[0] for x in (start, end)]
-                if all(x != 0 for x in ends):
-                    if bool(ends[0] > 0) != bool(ends[1] > 0):
-                        roots.append(_refined(on, equation, ball, digits))
-                    continue
-        if end - start < NARROWEST * end:
-            undecided.append(ball)
-            continue
-        # Off the middle, so that a root there does not stay on an end for ever.
-        cut = start + 0.4873 * (end - start)
-        pending += [(cut, end), (start, cut)]
-    if most:
-        return AxisRoots(tuple(roots), joined([*undecided, arb(pending[-1][0]).union(arb(limits[1]))]))
-    message = "the search for crossings of the imaginary axis takes too long"
-    raise BudgetError(Diagnostic("SF505", message, None, "narrow the range of the gain, or lower --up-to"))
+                sides = [equation(on(arb(x), BITS)[1])[0] for x in ends]
+                if all(x != 0 for x in sides):
+                    is_passed = bool(sides[0] > 0) != bool(sides[1] > 0)
+                    return _refined(on, equation, ball, digits) if is_passed else None
+        return Open(ends)
+
+    search = branch(pieces(*limits, FIRST_RATIO), decide, halves, most=most or MOST_INTERVALS)
+    if search.unseen and not most:
+        message = "the search for crossings of the imaginary axis takes too long"
+        raise BudgetError(
+            Diagnostic("SF505", message, None, "narrow the range of the gain, or lower --up-to")
+        )
+    return AxisRoots(tuple(search.decided), joined(map(ball_of, search.undecided)))
 
 
-def pieces(low: float, high: float, ratio: float) -> list[tuple[float, float]]:
-    """Return intervals between two frequencies, the last first; the ends of each have a ratio."""
+def ball_of(ends: Span) -> arb:
+    """Return the ball around an interval of frequencies."""
+    with precision(BITS):
+        low, high = map(arb, ends)
+        return (low + high) / 2 + arb(0, ((high - low) / 2).upper())
+
+
+def halves(ends: Span) -> list[Span]:
+    """Return both parts of an interval of frequencies, none of one that is narrow."""
+    low, high = ends
+    # Off the middle, so that a root there does not stay on an end for ever.
+    cut = low + 0.4873 * (high - low)
+    return [] if high - low < NARROWEST * high else [(low, cut), (cut, high)]
+
+
+def pieces(low: float, high: float, ratio: float) -> list[Span]:
+    """Return intervals between two frequencies; the ends of each have a ratio."""
     ends = [low]
     while ends[-1] < high:
         ends.append(min(ends[-1] * ratio, high))
-    return list(pairwise(ends))[::-1]
+    return list(pairwise(ends))
 
 
 def _refined(
@@ -122,7 +126,7 @@ def _refined(
     return narrowed(ball, newton, NEWTON_STEPS, STALLED)
 
 
-def joined(intervals: list[arb]) -> tuple[arb, ...]:
+def joined(intervals: Iterable[arb]) -> tuple[arb, ...]:
     """Return intervals, neighbours as one."""
     joined: list[arb] = []
     for interval in intervals:

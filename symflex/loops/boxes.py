@@ -22,7 +22,7 @@ from math import inf, isfinite
 from flint import acb, acb_series, arb, fmpz_mpoly
 
 from symflex.algebra import LAPLACE
-from symflex.balls import Value, at_centre, ball, current_bits, precision
+from symflex.balls import Open, Value, at_centre, ball, branch, current_bits, precision
 from symflex.budget import spend
 from symflex.errors import ModelError
 from symflex.expressions import names_among
@@ -200,64 +200,22 @@ class CharacteristicFunction:
     ) -> dict[Piece, tuple[list[float], Line]]:
         """Return the pieces, and parts of these, on which a factor may vanish, ascending.
 
-        With each stands what every parameter contributes to that, and a line. Where ``c + b (p - p_0) +
-        a (w - w_0)`` is 0 for real w and p, ``(c + b (p - p_0))/a`` is real: its imaginary part is the
-        line, and ``w_0`` less its real part is w (interval Newton method; Moore 1966).
+        With each stands what every parameter contributes to that, and a line.
         """
-        left = dict[Piece, tuple[list[float], Line]]()
         # Next to 0 one piece says of a small box what many said of a large one.
         last = next((i for i, (one, two) in enumerate(pairwise(pieces)) if one[1] < two[0]), len(pieces) - 1)
         if pieces and not pieces[0][0]:
             pieces = [(pieces[0][0], pieces[last][1]), *pieces[last + 1 :]]
-        pending = list(pieces[::-1])
-        start, way = map(acb, path)
-        while pending and len(left) < MOST_OPEN:
-            spend()
-            low, high = pending.pop()
-            point = (low + high) / 2
-            s = start + way * ball(low).union(ball(high))
-            # Next to 0 kernels of waves say nothing; all factors are tried there at once.
-            own, ones = slopes, [factor]
-            if entire is not None and s.contains(0):
-                own, ones = entire, list(range(len(entire.polynomials)))
-            near = own.generators(s)
-            around = own.around(s, ones, near)
-            if not any(value.contains(0) for value, _ in around):
-                continue
-            turns = [slope * way for _, slope in around]
-            if not low:
-                # Where the box alone leaves a root at the start, no shorter piece does without it.
-                values = own.swings(start, ones, near)
-                share, weights = max((share_taken(c, terms) for c, terms in values), key=lambda each: each[0])
-                if share >= 1 and _is_within([turn * ball(high) for turn in turns], values):
-                    left[low, high] = weights, _line(*values[0], turns[0]) if len(ones) == 1 else ()
-                    continue
-            values = own.swings(start + way * ball(point), ones, near)
-            steps = [turn * ball(high - point) for turn in turns]
-            shares = [share_taken(c, [*terms, step]) for (c, terms), step in zip(values, steps, strict=True)]
-            if all(share < 1 for share, _ in shares):
-                continue
-            # Where the box alone leaves it open, or nearly so, and as much as the piece, this is not halved.
-            share, (*weights, by_piece) = max(shares, key=lambda each: each[0])
-            is_open = share - by_piece > 1 - NEARLY
-            is_spent = _is_within(steps, values)
-            begin, end, line = low, high, Line()
-            if len(ones) == 1:
-                ((centre, terms),), (turn,) = values, turns
-                step = sum((term * arb(0, 1) for term in terms), centre) / turn
-                if step.is_finite():
-                    line = _line(centre, terms, turn)
-                    rest = ball(point) - step.real
-                    begin, end = max(low, _fraction(rest.lower())), min(high, _fraction(rest.upper()))
-            if begin > end:
-                continue
-            if (is_open and is_spent) or (end - begin) * 2 ** current_bits() < end:
-                left[begin, end] = weights, line
-            elif 2 * (end - begin) < high - low:
-                pending.append((begin, end))
-            else:
-                pending += [((begin + end) / 2, end), (begin, (begin + end) / 2)]
-        return left | {piece: ([0.0 for _ in slopes.box], Line()) for piece in pending[::-1]}
+        on_path = FactorOnPath(slopes, entire, factor, *map(acb, path))
+        search = branch(
+            map(PathPiece, pieces),
+            on_path.decide,
+            PathPiece.parts,
+            until=lambda found, _: len(found.decided) >= MOST_OPEN,
+        )
+        nothing = [0.0 for _ in slopes.box], Line()
+        left = {one.piece: (one.weights, one.line) for one in search.decided}
+        return left | {one.piece: nothing for one in search.undecided}
 
     def kernels(self, tf: TransferFunction, box: Box, along: str = "") -> KernelValues:
         """Return the evaluator for parameters anywhere in a box, to first order in one of them."""
@@ -294,6 +252,89 @@ class CharacteristicFunction:
     def _bound(self, tf: TransferFunction, box: Box) -> BoundTransferFunction:
         fixed = tuple((name, _enclosed(ends)) for name, ends in zip(self.names, box, strict=True))
         return BoundTransferFunction(tf, self.values, tf.ratio, tf.hidden, tf.kernels, fixed=fixed)
+
+
+@dataclass(frozen=True, slots=True)
+class PathPiece:
+    """A piece of a path, or what is left of one."""
+
+    piece: Piece
+    is_narrowed: bool = False  # to less than a half, so that it is looked at before it is halved
+
+    def parts(self) -> list[PathPiece]:
+        """Return both halves, or the piece itself if it was narrowed."""
+        begin, end = self.piece
+        middle = (begin + end) / 2
+        halves = [(begin, middle), (middle, end)]
+        return [PathPiece(self.piece)] if self.is_narrowed else [PathPiece(half) for half in halves]
+
+
+@dataclass(frozen=True, slots=True)
+class OpenPiece:
+    """A piece on which a factor may vanish for some parameters of a box; halves of it would say no more."""
+
+    piece: Piece
+    weights: list[float]  # what every parameter contributes to that
+    line: Line
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class FactorOnPath:
+    """One factor about the middle of a box, on pieces of a straight path."""
+
+    slopes: FirstOrder
+    entire: FirstOrder | None  # all factors, where kernels say nothing
+    factor: int
+    start: acb
+    way: acb
+
+    def decide(self, region: PathPiece) -> OpenPiece | Open[PathPiece] | None:
+        """Tell whether the factor may vanish on a piece, and on how much of it.
+
+        Where ``c + b (p - p_0) + a (w - w_0)`` is 0 for real w and p, ``(c + b (p - p_0))/a`` is real: its
+        imaginary part is the line, and ``w_0`` less its real part is w (interval Newton method; Moore 1966).
+        """
+        low, high = region.piece
+        point = (low + high) / 2
+        s = self.start + self.way * ball(low).union(ball(high))
+        # Next to 0 kernels of waves say nothing; all factors are tried there at once.
+        own, ones = self.slopes, [self.factor]
+        if self.entire is not None and s.contains(0):
+            own, ones = self.entire, list(range(len(self.entire.polynomials)))
+        near = own.generators(s)
+        around = own.around(s, ones, near)
+        if not any(value.contains(0) for value, _ in around):
+            return None
+        turns = [slope * self.way for _, slope in around]
+        if not low:
+            # Where the box alone leaves a root at the start, no shorter piece does without it.
+            values = own.swings(self.start, ones, near)
+            share, weights = max((share_taken(c, terms) for c, terms in values), key=lambda each: each[0])
+            if share >= 1 and _is_within([turn * ball(high) for turn in turns], values):
+                line = _line(*values[0], turns[0]) if len(ones) == 1 else ()
+                return OpenPiece(region.piece, weights, line)
+        values = own.swings(self.start + self.way * ball(point), ones, near)
+        steps = [turn * ball(high - point) for turn in turns]
+        shares = [share_taken(c, [*terms, step]) for (c, terms), step in zip(values, steps, strict=True)]
+        if all(share < 1 for share, _ in shares):
+            return None
+        # Where the box alone leaves it open, or nearly so, and as much as the piece, this is not halved.
+        share, (*weights, by_piece) = max(shares, key=lambda each: each[0])
+        is_open = share - by_piece > 1 - NEARLY
+        is_spent = _is_within(steps, values)
+        begin, end, line = low, high, Line()
+        if len(ones) == 1:
+            ((centre, terms),), (turn,) = values, turns
+            step = sum((term * arb(0, 1) for term in terms), centre) / turn
+            if step.is_finite():
+                line = _line(centre, terms, turn)
+                rest = ball(point) - step.real
+                begin, end = max(low, _fraction(rest.lower())), min(high, _fraction(rest.upper()))
+        if begin > end:
+            return None
+        if (is_open and is_spent) or (end - begin) * 2 ** current_bits() < end:
+            return OpenPiece((begin, end), weights, line)
+        return Open(PathPiece((begin, end), 2 * (end - begin) < high - low))
 
 
 @dataclass(frozen=True, eq=False)

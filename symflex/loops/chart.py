@@ -12,7 +12,6 @@ boundary is decided but for a strip about a straight line, and halved until stri
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -23,8 +22,9 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from symflex.balls import Branching, Open, branch
 from symflex.budget import entered_budget
-from symflex.errors import BudgetError, SymflexError
+from symflex.errors import SymflexError
 from symflex.loops.boundary_curves import Point, boundary_curves
 from symflex.loops.boxes import Box, CharacteristicFunction, OpenBox
 from symflex.model import ModelParameter
@@ -240,41 +240,20 @@ def find_chart(
 ) -> StabilityChart:
     """Return where in finite ``ranges`` a model is stable, up to a share to ``resolve`` and the time."""
     reasons: list[str] = []
-    free: npt.NDArray[np.bool_] = np.zeros((PARTS,) * 2, dtype=bool)
-    pending, smallest, still_open = deque([function.whole(ranges)]), list[OpenBox](), free.size
-    try:
-        with entered_budget().share(SEARCH).entered():
-            while pending and still_open > resolve * free.size:
-                if len(pending) > HOPELESS and not any(box.is_bounded for box in pending) and not free.any():
-                    break
-                for box in function.halves(pending[0]):
-                    sides = list(zip(ranges, box.box, strict=True))
-                    parts = [int((high - low) / (b - a)) for (low, high), (a, b) in sides]
-                    while len(free) < PARTS * max(parts):
-                        free, still_open = free.repeat(2, 0).repeat(2, 1), 4 * still_open
-                    steps = [len(free) // part for part in parts]
-                    starts = [int((a - low) / (high - low) * len(free)) for (low, high), (a, _) in sides]
-                    cells = free[tuple(slice(i, i + step) for i, step in zip(starts, steps, strict=True))]
-                    before = int(cells.sum())
-                    if before == cells.size:
-                        continue
-                    narrowed = function.narrowed(box) if box.is_bounded else box
-                    # Where a line bounds a box, or no end of the poles is known, the longer range is halved.
-                    if narrowed.lines or not box.is_bounded or max(parts) > SLENDER * min(parts):
-                        narrowed = replace(narrowed, weights=tuple(1 / part for part in parts))
-                    own = cells_without(narrowed)
-                    for axis, step in enumerate(steps):
-                        own = own.repeat(step // PARTS, axis)
-                    cells |= own
-                    still_open -= int(cells.sum()) - before
-                    if not cells.all():
-                        (smallest if max(parts) >> MOST_HALVINGS else pending).append(narrowed)
-                pending.popleft()
-    except BudgetError as error:
-        reasons.append(error.diagnostics[0].message)
+    search = _CellSearch(function, ranges)
+    with entered_budget().share(SEARCH).entered():
+        found: Branching[list[OpenBox], None] = branch(
+            [[function.whole(ranges)]],
+            search.decide,
+            search.alone,
+            order="breadth",
+            until=lambda _, waiting: search.open_share <= resolve or search.is_hopeless(waiting),
+            keeps=True,
+        )
+    reasons += [found.over.message] if found.over else []
+    free, smallest = search.free, search.smallest + [box for boxes in found.undecided for box in boxes]
     # The ends do not belong to the ranges: there the order may be lower.
     rims = {(k, x) for k, ends in enumerate(ranges) for x in ends}
-    smallest += pending
     inner = (box for box in smallest if not rims & {(k, x) for k, e in enumerate(box.box) for x in e})
     ends = {box.radius for box in inner if isinstance(box.radius, str)}
     regions_of, regions = _regions(function, free, ranges, reasons)
@@ -283,6 +262,67 @@ def find_chart(
         function.names, tuple(units), tuple(counted_in), ranges, tuple(nominal), regions_of, regions,
         tuple(dict.fromkeys((*reasons, *ends))), tuple(smallest), function
     )  # fmt: skip
+
+
+class _CellSearch:
+    """Marks the cells of two ranges in which no pole meets the axis, box by box."""
+
+    def __init__(self, function: CharacteristicFunction, ranges: Box) -> None:
+        self.function, self.ranges = function, ranges
+        self.free: npt.NDArray[np.bool_] = np.zeros((PARTS,) * 2, dtype=bool)  # finer as boxes are halved
+        self.smallest: list[OpenBox] = []  # open boxes that are not worth halving
+        self._found = 0  # how many are
+        self._is_bounded = False  # in some box it is known up to where poles are to be sought
+
+    @property
+    def open_share(self) -> float:
+        """Share of the area that is not marked."""
+        return 1 - self._found / self.free.size
+
+    def is_hopeless(self, waiting: int) -> bool:
+        """Tell whether poles have no bound in any of so many boxes."""
+        return waiting > HOPELESS and not self._is_bounded and not self._found
+
+    def _parts_of(self, box: OpenBox) -> list[int]:
+        """Return into how many parts such as a box each range is cut."""
+        sides = zip(self.ranges, box.box, strict=True)
+        return [int((high - low) / (b - a)) for (low, high), (a, b) in sides]
+
+    def decide(self, boxes: list[OpenBox]) -> Open[list[OpenBox]] | None:
+        """Mark the free cells in both halves of boxes; the halves in which some are not are open."""
+        halves = [half for box in boxes for half in self.function.halves(box)]
+        left = [narrowed for half in halves if (narrowed := self._marked(half)) is not None]
+        return Open(left) if left else None
+
+    def alone(self, boxes: list[OpenBox]) -> list[list[OpenBox]]:
+        """Return boxes one by one, but those that were halved as often as is of use; none if all were."""
+        small = [box for box in boxes if max(self._parts_of(box)) >> MOST_HALVINGS]
+        larger = [[box] for box in boxes if box not in small]
+        self.smallest += small if larger else []
+        return larger
+
+    def _marked(self, box: OpenBox) -> OpenBox | None:
+        parts = self._parts_of(box)
+        while len(self.free) < PARTS * max(parts):
+            self.free, self._found = self.free.repeat(2, 0).repeat(2, 1), 4 * self._found
+        steps = [len(self.free) // part for part in parts]
+        sides = zip(self.ranges, box.box, strict=True)
+        starts = [int((a - low) / (high - low) * len(self.free)) for (low, high), (a, _) in sides]
+        cells = self.free[tuple(slice(i, i + step) for i, step in zip(starts, steps, strict=True))]
+        before = int(cells.sum())
+        if before == cells.size:
+            return None
+        narrowed = self.function.narrowed(box) if box.is_bounded else box
+        self._is_bounded = self._is_bounded or box.is_bounded
+        # Where a line bounds a box, or no end of the poles is known, the longer range is halved.
+        if narrowed.lines or not box.is_bounded or max(parts) > SLENDER * min(parts):
+            narrowed = replace(narrowed, weights=tuple(1 / part for part in parts))
+        own = cells_without(narrowed)
+        for axis, step in enumerate(steps):
+            own = own.repeat(step // PARTS, axis)
+        cells |= own
+        self._found += int(cells.sum()) - before
+        return None if cells.all() else narrowed
 
 
 def cells_without(box: OpenBox) -> npt.NDArray[np.bool_]:

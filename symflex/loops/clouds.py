@@ -17,6 +17,7 @@ from itertools import pairwise
 from math import pi
 from typing import TYPE_CHECKING, Literal
 
+from symflex.balls import Branching, Open, branch
 from symflex.errors import BudgetError
 from symflex.loops.boxes import CharacteristicFunction, OpenBox
 from symflex.loops.over import with_values
@@ -160,11 +161,15 @@ def _count(function: CharacteristicFunction, box: Box, sides: Sides, kind: str) 
 
 def _is_free(function: CharacteristicFunction, box: Box, start: complex, way: complex) -> bool:
     """Tell whether no root lies on an edge for any combination."""
-    pending, done = [OpenBox(box, 0.0, tuple((PIECE,) for _ in function.factors))], 0
-    while pending and done < MOST_PARTS:
-        each, done = function.narrowed(pending.pop(), path=(start - way, way)), done + 1
-        pending += function.halves(each) if any(each.pieces) else []
-    return not pending
+    path = start - way, way
+
+    def decide(each: OpenBox) -> Open[OpenBox] | None:
+        narrowed = function.narrowed(each, path=path)
+        return Open(narrowed) if any(narrowed.pieces) else None
+
+    whole = OpenBox(box, 0.0, tuple((PIECE,) for _ in function.factors))
+    search: Branching[OpenBox, None] = branch([whole], decide, function.halves, most=MOST_PARTS)
+    return not search.undecided
 
 
 def clouds_text(clouds: Sequence[RootCloud]) -> str:

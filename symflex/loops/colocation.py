@@ -17,10 +17,9 @@ from math import inf
 
 from flint import acb, arb
 
-from symflex.balls import precision
-from symflex.budget import spend
+from symflex.balls import Open, branch, precision
 from symflex.errors import Diagnostic, ModelError, UsageError
-from symflex.loops.axis import pieces
+from symflex.loops.axis import Span, pieces
 from symflex.roots import figure
 from symflex.roots.root import hertz, real_json
 from symflex.transfer import BoundTransferFunction
@@ -128,9 +127,17 @@ def dynamic_colocation(
         if bound.ratio.is_zero:
             raise ModelError(Diagnostic("SF402", f"{bound.name} is identically zero"))
     within = partial(_state, _ratio(tip, joint), phase, magnitude)
-    edge, is_decided, begins, cause = _first_exit(within, low, high)
+    first = _first_exit(within, low, high)
     return DynamicColocation(
-        tip.name, joint.name, phase, magnitude, (low, high), edge, is_decided, cause, begins
+        tip.name,
+        joint.name,
+        phase,
+        magnitude,
+        (low, high),
+        first.edge,
+        first.is_decided,
+        first.cause,
+        first.begins,
     )
 
 
@@ -144,32 +151,54 @@ def _ratio(tip: BoundTransferFunction, joint: BoundTransferFunction) -> Callable
     return tip.enclosed_part(ratio, BITS) if tip.kernels else replace(tip, ratio=ratio).enclosed(BITS)
 
 
-def _first_exit(
-    state_on: Callable[[arb], tuple[int, str]], low: float, high: float
-) -> tuple[arb | None, bool, bool, str]:
-    """Return the frequency of the first exit, whether it is narrow, whether it begins inside, and why."""
+@dataclass(frozen=True, slots=True)
+class _Exit:
+    """Where outputs part first."""
+
+    edge: arb | None  # frequency [rad/s]; None if they do not part, or never were together
+    is_decided: bool
+    begins: bool  # they are together at the start
+    cause: str
+
+
+def _first_exit(state_on: Callable[[arb], tuple[int, str]], low: float, high: float) -> _Exit:
+    """Return where outputs part first between two frequencies [Hz]."""
     with precision(BITS):
         start, end = (float((2 * arb.pi() * arb(x)).mid()) for x in (low, high))
         state, cause = state_on(arb(start))
         if state != 1:
-            return None, state == -1, False, cause
-        pending = pieces(start, end, START_RATIO)
-        for _ in range(MOST_INTERVALS):
-            if not pending:
-                return None, True, True, ""
-            spend()
-            left, right = pending.pop()
-            ball = arb(left).union(arb(right))
-            state, cause = state_on(ball)
+            return _Exit(None, state == -1, begins=False, cause=cause)
+
+        def exit_on(ends: Span) -> _Exit | Open[Span] | None:
+            low, high = ends
+            span = arb(low).union(arb(high))
+            state, cause = state_on(span)
             if state == 1:
-                continue
-            if right - left < NARROWEST * right:
+                return None
+            if high - low < NARROWEST * high:
                 # It is left within this narrow interval where the other end is outside.
-                after, why = state_on(arb(right * (1 + 4 * NARROWEST)))
-                return ball, after == -1, True, why or cause
-            middle = left + (right - left) / 2
-            pending += [(middle, right), (left, middle)]
-    return ball, False, True, cause
+                after, why = state_on(arb(high * (1 + 4 * NARROWEST)))
+                return _Exit(span, after == -1, begins=True, cause=why or cause)
+            return Open(ends)
+
+        def halves(ends: Span) -> list[Span]:
+            low, high = ends
+            middle = low + (high - low) / 2
+            return [(low, middle), (middle, high)]
+
+        first = branch(
+            pieces(start, end, START_RATIO),
+            exit_on,
+            halves,
+            most=MOST_INTERVALS,
+            until=lambda found, _: bool(found.decided),
+        )
+        if first.decided:
+            return first.decided[0]
+        if not first.undecided:
+            return _Exit(None, is_decided=True, begins=True, cause="")
+        span = arb(first.undecided[0][0]).union(arb(first.undecided[0][1]))
+        return _Exit(span, is_decided=False, begins=True, cause=state_on(span)[1])
 
 
 def _state(ratio: Callable[[acb], acb], phase: float, magnitude: float, omega: arb) -> tuple[int, str]:

@@ -8,7 +8,6 @@ principle about a half disc, beyond which, where this can be proved, there are n
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -296,7 +295,7 @@ class DistributedFactors(AxisSearch):
         for circle in self._circles:
             with suppress(UndecidedError):
                 for function in self.with_gain:
-                    deque(covered(partial(is_free, circle, function), ARCS, SHORTEST), 0)
+                    covered(partial(is_free, circle, function), ARCS, SHORTEST)
                 return circle
         return 0.0
 

@@ -122,7 +122,7 @@ class GainFunctions:
                 return place[0], sign * place[1]
 
             failed = 0
-            for ends in pieces(start, end * BEYOND, EACH_RATIO) if start < end else ():
+            for ends in reversed(pieces(start, end * BEYOND, EACH_RATIO)) if start < end else ():
                 if failed == MOST_FAILED:  # all that is next to zero
                     undecided.append(sign * arb(start).union(arb(ends[1])))
                     break

@@ -21,8 +21,8 @@ from itertools import pairwise
 
 from flint import acb, arb
 
-from symflex.balls import ball, bits_for_digits, precision
-from symflex.errors import BudgetError, Diagnostic, ModelError, UsageError
+from symflex.balls import Open, ball, bits_for_digits, branch, precision
+from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.expressions import names_among
 from symflex.loops.boxes import BITS, Box, CharacteristicFunction, Ends, OpenBox
 from symflex.loops.chart import StabilityChart, count_at, find_chart
@@ -41,6 +41,7 @@ from symflex.transfer.bind import read_values
 from symflex.transfer.of_model import assemble, derive_all
 
 Interval = tuple[Ends, PoleCount]
+Row = list[OpenBox]  # boxes that touch
 WIDER, WIDER_PART = 10, 2  # times of its value that a parameter, of signals or of parts, may have by default
 SLIVER = 64  # parts as narrow as the digits, up to which what lies between two boundaries is theirs
 LEAST = 10**6  # part of the range to which values about zero are enclosed
@@ -168,30 +169,33 @@ def find_intervals(
     bits, reasons = bits_for_digits(digits) + BITS, list[str]()
     decided: list[Ends] = []
     gaps: list[OpenBox] = []
-    wide: list[OpenBox] = []  # in which more than one boundary may lie
-    pending = [function.whole((limits,))]
-    try:
-        while pending:
-            left = []
-            for box in pending:
-                narrowed = function.narrowed(box, bits) if box.is_bounded else box
-                if narrowed.is_bounded and not any(narrowed.pieces):
-                    decided.append(box.box[0])
-                elif _is_narrow(box.box[0], limits, digits):
-                    gaps.append(narrowed)
-                else:
-                    left.append(narrowed)
-            pending = [half for box in left for half in function.halves(box)]
-            for low, high in _joined([box.box[0] for box in pending]):
-                row = [box for box in pending if low <= box.box[0][0] < high]
-                if len(row) > MOST_GAPS:
-                    ends = f"{float(low):.6g} and {float(high):.6g}"
-                    reasons.append(f"it could not be decided whether poles meet the axis between {ends}")
-                    wide += row
-                    pending = [box for box in pending if box not in row]
-    except BudgetError as error:
-        reasons.append(error.diagnostics[0].message)
-        wide += pending
+
+    def decide(row: Row) -> Row | Open[Row] | None:
+        if len(row) > MOST_GAPS:
+            return row
+        left = []
+        for box in row:
+            narrowed = function.narrowed(box, bits) if box.is_bounded else box
+            if narrowed.is_bounded and not any(narrowed.pieces):
+                decided.append(box.box[0])
+            elif _is_narrow(box.box[0], limits, digits):
+                gaps.append(narrowed)
+            else:
+                left.append(narrowed)
+        return Open(left) if left else None
+
+    def halves(row: Row) -> list[Row]:
+        parts = [half for box in row for half in function.halves(box)]
+        touching = _joined([box.box[0] for box in parts])
+        return [[box for box in parts if low <= box.box[0][0] < high] for low, high in touching]
+
+    search = branch([[function.whole((limits,))]], decide, halves, order="breadth", keeps=True)
+    for row in search.decided:
+        ends = f"{float(row[0].box[0][0]):.6g} and {float(row[-1].box[0][1]):.6g}"
+        reasons.append(f"it could not be decided whether poles meet the axis between {ends}")
+    reasons += [search.over.message] if search.over else []
+    # Boxes in which more than one boundary may lie.
+    wide = [box for row in (*search.decided, *search.undecided) for box in row]
     # The ends do not belong to the range: there the order may be lower, or a pole meet the axis.
     rims = {*limits}
     inside = [gap for gap in (*gaps, *wide) if not rims & {*gap.box[0]}]

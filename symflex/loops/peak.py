@@ -18,8 +18,7 @@ from typing import TYPE_CHECKING
 from flint import acb, acb_poly, arb
 
 from symflex.algebra import LAPLACE, NO_KERNELS, Factored, composed, degree_in
-from symflex.balls import UndecidedError, ball, bits_for_digits, precision, settled
-from symflex.budget import spend
+from symflex.balls import Open, UndecidedError, ball, bits_for_digits, branch, precision, settled
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.loops.axis import FIRST_RATIO, find_on_axis, joined, pieces
 from symflex.loops.delayed_limit import delayed_bound, delayed_limit
@@ -46,7 +45,6 @@ if TYPE_CHECKING:
     from symflex.roots import PolynomialInS, Root
     from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
-    Piece = tuple[float, arb, LoopValue, LoopValue]  # magnitude, place, values around and in the middle
 
 BITS, MOST_DIGITS, SPARE_DIGITS = 160, 30, 20  # of pieces, halved some hundred times; of frequencies
 SUSPECT, NARROWEST, MOST_PIECES = 1e-9, 1e-30, 20_000
@@ -198,7 +196,7 @@ def _bandwidth(bound: BoundTransferFunction, inverse: LoopFunction) -> arb | Non
         low /= FIRST_RATIO
     waves = KernelFunction(bound, Factored.polynomial(bound.ratio.ring, inverse.b))
     end = min(low * BELOW, waves.frequency_of(WAVES) * FURTHER)
-    for ends in reversed(pieces(low, end, FIRST_RATIO)):
+    for ends in pieces(low, end, FIRST_RATIO):
         found = find_on_axis(inverse.on, lambda v: v.excess(level), lambda _: False, ends, 12)
         if found.undecided or found.roots:
             return None if found.undecided else bound.frequency(found.roots[0])
@@ -304,6 +302,32 @@ def _h2_norm(above: PolynomialInS, below: PolynomialInS, digits: int) -> arb:
     return total.sqrt()
 
 
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """A piece of the axis with the values on it."""
+
+    size: float  # magnitude in the middle
+    place: arb  # frequencies [rad/s]
+    around: LoopValue
+    centre: LoopValue
+
+    @property
+    def halves(self) -> tuple[arb, arb]:
+        """Both halves of its frequencies."""
+        middle = self.place.mid()
+        return middle.union(self.place.lower()), middle.union(self.place.upper())
+
+    def is_below(self, level: arb) -> bool:
+        """Tell whether magnitudes on it are below a level."""
+        value, slope = self.around.excess(level)
+        middle = self.centre.excess(level)[0]
+        return bool(value < 0) or bool(middle + slope * (self.place - self.place.mid()) < 0)
+
+
+def _largest_first(pieces: Sequence[Piece]) -> list[Piece]:
+    return sorted(pieces, key=lambda piece: piece.size, reverse=True)
+
+
 class _Pieces:
     """The search for the peak of a quotient A/B with kernels."""
 
@@ -349,7 +373,7 @@ class _Pieces:
             pole = self._search(low, 2 * low)
         if pole is not None:
             return replace(self.asked, magnitude=arb("inf"), places=(pole,))
-        near = [piece[1] * arb(1, SAME) for piece in self.near if not self._is_below(piece, self.best)]
+        near = [piece.place * arb(1, SAME) for piece in self.near if not piece.is_below(self.best)]
         places = list(joined(sorted(near, key=lambda place: float(place.mid()))))
         if origin is not None and origin.side(self.best, arb(low)) >= 0:
             falls = origin.is_real and origin.excess(rest, arb(low))[1] < 0
@@ -394,34 +418,35 @@ class _Pieces:
     def _search(self, low: float, high: float) -> arb | None:
         """Halve pieces until none may hold a larger magnitude; return a pole on the axis if one is met."""
         first = pieces(low, high, FIRST_RATIO) if low < high else []
-        pending = [self._piece(arb(start).union(arb(end))) for start, end in first]
-        pending.sort(key=lambda piece: piece[0])
-        while pending:
-            spend()
-            piece, self.count = pending.pop(), self.count + 1
-            _, place, around, _ = piece
-            if self._is_below(piece, self._level()):
-                self.near += [] if self._is_below(piece, self.best) else [piece]
-                continue
-            width, halves = place.rad() / place.mid(), (place.lower(), place.upper())
-            if width < SUSPECT and around.b.contains(0) and self.owner.is_of_model:
-                ends = (exact_fraction(hertz(self.bound.frequency(x))) for x in halves)
-                for pole in locate(self.owner, Band(*ends), with_zeros=False).poles:
-                    if pole.on_imaginary_axis and self.sign * pole.im > 0:
-                        return self.sign * pole.im
-            if self.count > MOST_PIECES or width < NARROWEST:
-                message = f"the magnitude near {short_hertz(place)} Hz is not decided"
-                raise BudgetError(Diagnostic("SF505", message, None, "give a --band without it"))
-            pending += sorted(map(self._piece, map(place.mid().union, halves)), key=lambda piece: piece[0])
-        return None
+        whole = [self._piece(arb(start).union(arb(end))) for start, end in first]
+        search = branch(
+            _largest_first(whole),
+            self._decide,
+            lambda piece: _largest_first([self._piece(half) for half in piece.halves]),
+            until=lambda found, _: bool(found.decided),
+        )
+        return search.decided[0] if search.decided else None
+
+    def _decide(self, piece: Piece) -> arb | Open[Piece] | None:
+        """Drop a piece below the level, if it is near the best with a note of it; return a pole met there."""
+        self.count += 1
+        if piece.is_below(self._level()):
+            self.near += [] if piece.is_below(self.best) else [piece]
+            return None
+        place = piece.place
+        width = place.rad() / place.mid()
+        if width < SUSPECT and piece.around.b.contains(0) and self.owner.is_of_model:
+            ends = (exact_fraction(hertz(self.bound.frequency(x))) for x in (place.lower(), place.upper()))
+            for pole in locate(self.owner, Band(*ends), with_zeros=False).poles:
+                if pole.on_imaginary_axis and self.sign * pole.im > 0:
+                    return self.sign * pole.im
+        if self.count > MOST_PIECES or width < NARROWEST:
+            message = f"the magnitude near {short_hertz(place)} Hz is not decided"
+            raise BudgetError(Diagnostic("SF505", message, None, "give a --band without it"))
+        return Open(piece)
 
     def _piece(self, place: arb) -> Piece:
         around, centre = self.function.on(place, BITS)
         size = abs(centre.a) / abs(centre.b)
         self.best = size.lower() if size.is_finite() and size > self.best else self.best
-        return float(size.mid()), place, around, centre
-
-    def _is_below(self, piece: Piece, level: arb) -> bool:
-        _, place, around, centre = piece
-        value, slope = around.excess(level)
-        return bool(value < 0) or bool(centre.excess(level)[0] + slope * (place - place.mid()) < 0)
+        return Piece(float(size.mid()), place, around, centre)

@@ -14,16 +14,16 @@ point; what holds there is proved as for any one point.
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import count
 
 from flint import acb
 
-from symflex.balls import precision
+from symflex.balls import Open, branch, precision
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError, UsageError
-from symflex.loops.boxes import BITS, Box, CharacteristicFunction
+from symflex.loops.boxes import BITS, Box, CharacteristicFunction, OpenBox
 from symflex.loops.chart import Word, count_at, located_at
 from symflex.loops.over import characteristic, with_values
 from symflex.loops.stability_map import SCHEMA
@@ -135,7 +135,6 @@ def find_spread(
     """Return what holds for all parameters of a characteristic function in a box."""
     units, counted_in = (p.unit for p in parameters), (p.counted_in for p in parameters)
     result = SpreadStability(function.names, tuple(units), tuple(counted_in), box, "undecided")
-    pending, done, reason = deque([function.whole(box)]), 0, ""
     try:
         located = located_at(function, middle_of(box), FOLLOWED)
         if located.verdict.word != "stable":
@@ -145,27 +144,44 @@ def find_spread(
         for s in sorted(poles, key=lambda s: (reach(function, s, box)[0] + s).real)[-FOLLOWED:]:
             if (unstable := _pushed(function, s, box, result, tried)) is not None:
                 return unstable
-        while pending and done < MOST_BOXES:
-            each, done = pending.popleft(), done + 1
-            if each.is_bounded:
-                each = function.narrowed(each)
-                if not any(each.pieces):
-                    continue
-                if done in TRIES:
-                    low, high = next(pieces[-1] for pieces in each.pieces if pieces)
-                    s = complex(0, float(low + high) / 2)
-                    if (unstable := _pushed(function, s, each.box, result, tried)) is not None:
-                        return unstable
-            pending += function.halves(each)
+        numbers = count(1)
+
+        def decide(each: OpenBox) -> SpreadStability | Open[OpenBox] | None:
+            number = next(numbers)
+            if not each.is_bounded:
+                return Open(each)
+            each = function.narrowed(each)
+            if not any(each.pieces):
+                return None
+            if number in TRIES:
+                low, high = next(pieces[-1] for pieces in each.pieces if pieces)
+                s = complex(0, float(low + high) / 2)
+                if (unstable := _pushed(function, s, each.box, result, tried)) is not None:
+                    return unstable
+            return Open(each)
+
+        search = branch(
+            [function.whole(box)],
+            decide,
+            function.halves,
+            order="breadth",
+            most=MOST_BOXES,
+            until=lambda found, _: bool(found.decided),
+            keeps=True,
+        )
     except BudgetError as error:
-        reason = error.diagnostics[0].message
+        return replace(result, reason=error.diagnostics[0].message, open_box=box)
     except SymflexError as error:
         return replace(result, reason=error.diagnostics[0].message)
-    if not pending:
-        return replace(result, word="stable", boxes=done)
-    ends = (str(each.radius) for each in pending if not each.is_bounded)
-    reason = reason or next(ends, f"poles may meet the axis in {len(pending)} of {done + len(pending)} boxes")
-    return replace(result, boxes=done, open_box=pending[0].box, reason=reason)
+    if search.decided:
+        return search.decided[0]
+    if not search.undecided:
+        return replace(result, word="stable", boxes=search.spent)
+    left, boxes = len(search.undecided), search.spent - (search.over is not None)
+    ends = (str(each.radius) for each in search.undecided if not each.is_bounded)
+    reason = next(ends, f"poles may meet the axis in {left} of {boxes + left} boxes")
+    reason = search.over.message if search.over else reason
+    return replace(result, boxes=boxes, open_box=search.undecided[0].box, reason=reason)
 
 
 def _pushed(

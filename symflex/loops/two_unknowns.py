@@ -9,14 +9,13 @@ on the axis at one frequency, where a resultant has a double root; as boxes they
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from flint import acb, arb, arb_series
 
-from symflex.balls import bits_for_digits, precision
-from symflex.budget import spend
-from symflex.loops.axis import BITS, FIRST_RATIO, NARROWEST, NEWTON_STEPS, joined, pieces
+from symflex.balls import Branching, Open, Pair, bits_for_digits, branch, newton_box, precision, two_steps
+from symflex.loops.axis import BITS, FIRST_RATIO, Span, ball_of, halves, joined, pieces
 from symflex.loops.loop_function import LoopFunction
 
 Weights = Callable[[arb], Sequence[arb_series]]
@@ -84,14 +83,22 @@ class GainTree:
 
 def left(pieces: Sequence[GainTree], place: PartsAlong) -> list[GainTree]:
     """Return in which pieces of pieces a sum may vanish, ascending, cut as far as that is worth it."""
-    kept = list(pieces)
-    while True:
-        sums = [(piece, *piece.sums(place)) for piece in kept]
-        alive = [each for each in sums if not each[1].is_finite() or each[1].contains(0)]
-        wide = [p for p, total, across in alive if p.depth < DEEPEST and not 2 * across.rad() < total.rad()]
-        if not wide or len(alive) + len(wide) > MOST_BOXES:
-            return [piece for piece, *_ in alive]
-        kept = [half for piece, *_ in alive for half in (piece.halves if piece in wide else [piece])]
+
+    def decide(piece: GainTree) -> GainTree | Open[GainTree] | None:
+        total, across = piece.sums(place)
+        if total.is_finite() and not total.contains(0):
+            return None
+        is_worth_it = piece.depth < DEEPEST and not 2 * across.rad() < total.rad()
+        return Open(piece) if is_worth_it else piece
+
+    search = branch(
+        pieces,
+        decide,
+        lambda piece: piece.halves,
+        order="breadth",
+        until=lambda found, waiting: len(found.decided) + waiting > MOST_BOXES,
+    )
+    return sorted((*search.decided, *search.undecided), key=lambda piece: float(piece.ends[0].mid()))
 
 
 def _sum(weights: Sequence[arb], parts: Sequence[acb]) -> acb:
@@ -102,88 +109,69 @@ def _sum(weights: Sequence[arb], parts: Sequence[acb]) -> acb:
 class AxisPoints:
     """Frequencies [rad/s] and gains at which poles are on the axis."""
 
-    proved: list[tuple[arb, arb]]  # enclosures of one point each
-    undecided: list[tuple[arb, arb]]
+    proved: list[Pair]  # enclosures of one point each
+    undecided: list[Pair]
 
 
-def find_axis_points(
-    function: LoopFunction, tree: GainTree, limits: tuple[float, float], digits: int
-) -> AxisPoints | None:
+@dataclass(frozen=True, slots=True)
+class OpenGains:
+    """An interval of frequencies, and the gains at which a pole may be there."""
+
+    ends: Span
+    gains: Sequence[GainTree]
+
+    @property
+    def boxes(self) -> list[Pair]:
+        """Boxes of frequency and gain, gains that touch in one."""
+        return [(ball_of(self.ends), gain) for gain in joined(piece.gain for piece in self.gains)]
+
+    def halves(self) -> list[OpenGains]:
+        """Return both parts, none of a narrow one."""
+        return [replace(self, ends=ends) for ends in halves(self.ends)]
+
+
+def find_axis_points(function: LoopFunction, tree: GainTree, limits: Span, digits: int) -> AxisPoints | None:
     """Return all between two frequencies, for the gains of a tree; None where they are too many intervals."""
-    pending = [(start, end, [tree]) for start, end in pieces(*limits, FIRST_RATIO)]
-    found = AxisPoints([], [])
-    for _ in range(MOST_INTERVALS):
-        if not pending:
-            return found
-        spend()
-        start, end, known = pending.pop()
+    proved: list[Pair] = []
+
+    def steps(box: Pair, bits: int) -> Pair | None:
+        return _steps(function, tree.weights, box, bits)
+
+    def decide(each: OpenGains) -> Open[OpenGains] | None:
+        omega = ball_of(each.ends)
         with precision(BITS):
-            omega = (arb(start) + arb(end)) / 2 + arb(0, ((arb(end) - arb(start)) / 2).upper())
             around, centre = function.parts_around(acb(0, omega), BITS)
             off = acb(0, omega - omega.mid())
-            known = left(known, PartsAlong([c for c, _ in centre], [slope for _, slope in around], off))
-            gains = joined([piece.gain for piece in known])
-            points = [_point(function, tree.weights, omega, gain, digits) for gain in gains]
-        if None not in points:
-            for point in points:
-                # One that was found from the interval before is not another.
-                is_met = (
-                    all(x.overlaps(y) for x, y in zip(point, p, strict=True)) for p in found.proved if point
-                )
-                if point and not any(is_met):
-                    found.proved.append(point)
-        elif end - start < NARROWEST * end:
-            found.undecided.extend((omega, gain) for gain in gains)
-        else:
-            cut = start + 0.4873 * (end - start)
-            pending += [(cut, end, known), (start, cut, known)]
-    return None
-
-
-def _point(
-    function: LoopFunction, weights: Weights, omega: arb, gain: arb, digits: int
-) -> tuple[arb, arb] | tuple[()] | None:
-    """Return the one point about a box, nothing where there is none, None where that is not decided."""
-    box = tuple(x.mid() + arb(0, x.rad() * INFLATED) for x in (omega, gain))
-    step = _step(function, weights, box, BITS)
-    if step is None:
+            place = PartsAlong([c for c, _ in centre], [slope for _, slope in around], off)
+            each = replace(each, gains=left(each.gains, place))
+        wanted = bits_for_digits(digits) + 16
+        points = [newton_box(steps, _inflated(box), BITS, wanted) for box in each.boxes]
+        if any(status == "undecided" for status, _ in points):
+            return Open(each)
+        for status, point in points:
+            # One that was found from the interval before is not another.
+            is_met = (all(x.overlaps(y) for x, y in zip(point, p, strict=True)) for p in proved)
+            if status == "one" and not any(is_met):
+                proved.append(point)
         return None
-    moved = tuple(x.mid() - y for x, y in zip(box, step, strict=True))
-    if not all(x.overlaps(y) for x, y in zip(box, moved, strict=True)):
-        return ()
-    if not all(bool(abs(y) < x.rad()) for x, y in zip(box, step, strict=True)):
+
+    whole = [OpenGains(ends, (tree,)) for ends in pieces(*limits, FIRST_RATIO)]
+    search: Branching[OpenGains, None] = branch(whole, decide, OpenGains.halves, most=MOST_INTERVALS)
+    if search.unseen:
         return None
-    wanted = bits_for_digits(digits) + 16
-    for _ in range(NEWTON_STEPS):
-        known = min(x.rel_accuracy_bits() for x in moved)
-        if known > wanted:
-            break
-        bits = min(max(BITS, 2 * known + 64), 2 * wanted + BITS)
-        step = _step(function, weights, moved, bits)
-        if step is None:
-            break
-        with precision(bits):
-            new = tuple(x.intersection(x.mid() - y) for x, y in zip(moved, step, strict=True))
-        if all(y.rad() > x.rad() * 0.99 for x, y in zip(moved, new, strict=True)):
-            break
-        moved = new
-    return moved[0], moved[1]
+    return AxisPoints(proved, [box for each in search.undecided for box in each.boxes])
 
 
-def _step(
-    function: LoopFunction, weights: Weights, box: tuple[arb, ...], bits: int
-) -> tuple[arb, arb] | None:
-    """Return Newton's step from the middle of a box, for all slopes on it; None where these are singular."""
+def _inflated(box: Pair) -> Pair:
+    omega, gain = (x.mid() + arb(0, x.rad() * INFLATED) for x in box)
+    return omega, gain
+
+
+def _steps(function: LoopFunction, weights: Weights, box: Pair, bits: int) -> Pair | None:
+    """Return Newton's steps from the middle of a box, for all slopes on it; None where these are parallel."""
     omega, gain = box
     around, centre = function.parts_around(acb(0, omega), bits)
-    with precision(bits):
-        wide, middle = weights(gain), weights(gain.mid())
-        value = _sum([w[0] for w in middle], [c for c, _ in centre])
-        by_omega = acb(0, 1) * _sum([w[0] for w in wide], [slope for _, slope in around])
-        by_gain = _sum([w[1] for w in wide], [c for c, _ in around])
-        determinant = by_omega.real * by_gain.imag - by_omega.imag * by_gain.real
-        if not determinant.is_finite() or determinant.contains(0):
-            return None
-        first = value.real * by_gain.imag - value.imag * by_gain.real
-        second = by_omega.real * value.imag - by_omega.imag * value.real
-        return first / determinant, second / determinant
+    wide, middle = weights(gain), weights(gain.mid())
+    value = _sum([w[0] for w in middle], [c for c, _ in centre])
+    by_omega = acb(0, 1) * _sum([w[0] for w in wide], [slope for _, slope in around])
+    return two_steps(value, by_omega, _sum([w[1] for w in wide], [c for c, _ in around]))

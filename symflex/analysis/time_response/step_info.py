@@ -14,7 +14,6 @@ the later one begins, the fewer modes are still alive, and the smoother it is.
 
 from __future__ import annotations
 
-import heapq
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -34,8 +33,7 @@ from symflex.analysis.time_response.partial_fractions import (
 from symflex.analysis.time_response.sample_times import SampleTimes, default_until
 from symflex.analysis.time_response.sampled import PartialSum
 from symflex.analysis.time_response.settling import late_response, pieces_of
-from symflex.balls import bits_for_digits, precision
-from symflex.budget import spend
+from symflex.balls import Open, bits_for_digits, branch, precision
 from symflex.model.loss_factors import check_causal
 from symflex.print.text import Passage
 from symflex.roots.functions.simplified import without_lengths_of_zero
@@ -58,6 +56,7 @@ DELAYS_DIGITS = 60  # digits of poles of loops with delays: high powers of their
 FADED = 1e-11  # share of the final value that a response with delays may have when residues take over
 SMOOTH_MODES = (400, 40, 20, 10, 5, 3)  # terms of a piece of waves, in turn: few are smooth, many sharp
 DEAD = 1e-14  # share of the final value below which a mode is left out
+TOUCHED = arb("nan")  # in place of a time: a response touches the level there, or passes it twice
 MOST_PIECES = 60
 ZERO: Final = arb(0)
 
@@ -314,6 +313,39 @@ def _sum_of(terms: Sequence[ExponentialTerm], t: arb) -> arb:
     return total
 
 
+@dataclass(frozen=True, slots=True)
+class Span:
+    """Times between two, on which a response is one piece."""
+
+    piece: Piece
+    low: arb
+    high: arb
+
+    @property
+    def halves(self) -> tuple[Span, Span]:
+        """Both halves, the earlier one first."""
+        middle = ((self.low + self.high) / 2).mid()
+        return Span(self.piece, self.low, middle), Span(self.piece, middle, self.high)
+
+
+@dataclass(frozen=True, slots=True)
+class Values:
+    """A ball around the values of a piece between two times."""
+
+    span: Span
+    around: arb  # but for the rest
+
+    @property
+    def response(self) -> arb:
+        """A ball around the values, with the rest."""
+        return self.around + arb(0, self.span.piece.rest.upper())
+
+    @property
+    def most(self) -> arb:
+        """The most that a value may be."""
+        return (self.around + self.span.piece.rest).upper()
+
+
 class NormalisedResponse:
     """A response over its final value: 1 plus exponentials that decay, after pieces of other ones."""
 
@@ -321,11 +353,11 @@ class NormalisedResponse:
         self.pieces = pieces
         self.is_lost = False  # something could not be decided
 
-    def parts(self, until: arb) -> list[tuple[Piece, arb, arb]]:
+    def parts(self, until: arb) -> list[Span]:
         """Return the pieces up to a time, each with when it begins and ends."""
         starts = [piece.begins for piece in self.pieces[1:] if piece.begins < until]
         ends = zip((arb(0), *starts), (*starts, until), strict=True)
-        return [(piece, *each) for piece, each in zip(self.pieces, ends, strict=False)]
+        return [Span(piece, *each) for piece, each in zip(self.pieces, ends, strict=False)]
 
     def quiet(self, level: float) -> arb | None:
         """Return a time from which on the response is closer to its end than a level; None without one."""
@@ -345,42 +377,45 @@ class NormalisedResponse:
         if until is None:
             return None
         shortest = until * arb(2) ** -HALVINGS
-        best = 1 + arb(close)
-        queue: list[tuple[arb, int, Piece, arb, arb, arb]] = []
-        left: list[tuple[arb, arb, arb, Piece]] = []
+        best, work = 1 + arb(close), 0
 
-        def add(piece: Piece, low: arb, high: arb) -> None:
+        def values_on(span: Span) -> Values:
             nonlocal best
-            span = piece.over(low, high)
-            best = best.max((span - piece.rest).lower())
-            heapq.heappush(queue, (-(span + piece.rest).upper(), next(count), piece, low, high, span))
+            around = span.piece.over(span.low, span.high)
+            best = best.max((around - span.piece.rest).lower())
+            return Values(span, around)
 
-        count, work = itertools.count(), 0
-        for part in self.parts(until):
-            add(*part)
-        while queue and -queue[0][0] >= best:
-            spend()
-            _, _, piece, low, high, span = heapq.heappop(queue)
-            work += 2 * len(piece.terms)
-            if work > MOST_WORK:
+        def decide(values: Values) -> Values | Open[Values] | None:
+            nonlocal work
+            if values.most < best:
                 return None
-            if high - low > shortest and not span.rad() < piece.rest / 4:
-                middle = ((low + high) / 2).mid()
-                add(piece, low, middle)
-                add(piece, middle, high)
-            else:
-                left.append((low, high, span + arb(0, piece.rest.upper()), piece))
-        left = sorted((own for own in left if not own[2] < best), key=lambda own: own[0].mid())
+            span = values.span
+            work += 2 * len(span.piece.terms)
+            is_long = span.high - span.low > shortest and not values.around.rad() < span.piece.rest / 4
+            return Open(values) if is_long else values
+
+        search = branch(
+            map(values_on, self.parts(until)),
+            decide,
+            lambda values: [values_on(half) for half in values.span.halves],
+            order=lambda values: float(values.most),
+            until=lambda *_: work > MOST_WORK,
+        )
+        if search.unseen:
+            return None
+        left = sorted((v for v in search.decided if not v.most < best), key=lambda v: v.span.low.mid())
         if not left:
             return None, arb(1).union(best)
-        if any(a[1] < b[0] for a, b in itertools.pairwise(left)):
+        spans = [values.span for values in left]
+        if any(a.high < b.low for a, b in itertools.pairwise(spans)):
             return None  # two peaks, maybe
-        begun, ended, highest, piece = left[0]
-        if piece.rest == 0 and all(own[3] is piece and piece.slope(*own[:2]) < 0 for own in left):
+        begun, piece = spans[0].low, spans[0].piece
+        if piece.rest == 0 and all(s.piece is piece and piece.slope(s.low, s.high) < 0 for s in spans):
             return begun, piece.at(begun)  # it begins at its peak
-        for own in left[1:]:
-            ended, highest = own[1], highest.union(own[2])
-        return begun.union(ended), highest
+        highest = left[0].response
+        for values in left[1:]:
+            highest = highest.union(values.response)
+        return begun.union(spans[-1].high), highest
 
     def first(self, level: float, until: arb) -> arb | None:
         """Return when the response first reaches a level below 1; at once, if it begins above."""
@@ -407,31 +442,37 @@ class NormalisedResponse:
     def crossing(self, level: float, sign: int, until: arb, *, is_last: bool) -> arb | None:
         """Return when its least or most passes a level first or last; None if never, or ``is_lost``."""
         shortest = until * arb(2) ** -HALVINGS
-        pending = self.parts(until)[:: 1 if is_last else -1]
         before: bool | None = None  # whether it is above the level next to what is looked at now
         unclear: arb | None = None  # where it may be either, between
         work = 0
-        while work < MOST_WORK:
-            spend()
-            if not pending:
-                self.is_lost = self.is_lost or unclear is not None
+
+        def decide(span: Span) -> arb | Open[Span] | None:
+            nonlocal before, unclear, work
+            work += len(span.piece.terms)
+            above = span.piece.over(span.low, span.high) - (level - sign * span.piece.rest)
+            if above.contains(0):
+                if span.high - span.low > shortest:
+                    return Open(span)
+                between = span.low.union(span.high)
+                unclear = between if unclear is None else unclear.union(between)
                 return None
-            piece, low, high = pending.pop()
-            work += len(piece.terms)
-            span = piece.over(low, high) - (level - sign * piece.rest)
-            if not span.contains(0):
-                if before is not None and before != (span > 0):
-                    return (high if is_last else low) if unclear is None else unclear
-                if before is not None and unclear is not None:
-                    break  # it touches the level, or passes it twice
-                before, unclear = bool(span > 0), None
-            elif high - low > shortest:
-                middle = ((low + high) / 2).mid()
-                halves = [(piece, low, middle), (piece, middle, high)]
-                pending += halves if is_last else halves[::-1]
-            else:
-                unclear = low.union(high) if unclear is None else unclear.union(low.union(high))
-        self.is_lost = True
+            if before is not None and before != (above > 0):
+                return (span.high if is_last else span.low) if unclear is None else unclear
+            if before is not None and unclear is not None:
+                return TOUCHED
+            before, unclear = bool(above > 0), None
+            return None
+
+        order = -1 if is_last else 1
+        search = branch(
+            self.parts(until)[::order],
+            decide,
+            lambda span: span.halves[::order],
+            until=lambda found, _: bool(found.decided) or work >= MOST_WORK,
+        )
+        if search.decided and search.decided[0].is_finite():
+            return search.decided[0]
+        self.is_lost = self.is_lost or bool(search.decided) or search.unseen > 0 or unclear is not None
         return None
 
 

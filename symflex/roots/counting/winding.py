@@ -184,8 +184,9 @@ class Winding(Generic[F_co]):
                 a, b = (end if t == 1 else start + (end - start) * t for t in (low, high))
                 return continuous_step(self.sample(a), self.sample(b), b - a)
 
-            steps = covered(step, max(1, ceil(pieces)), smallest / max(abs(end - start), smallest) / 2)
+            shortest = smallest / max(abs(end - start), smallest) / 2
             try:
+                steps = covered(step, max(1, ceil(pieces)), shortest)
                 self._edges[start, end] = sum(turn for _, _, turn in steps)
             except UndecidedError as error:
                 raise RootOnPathError from error

@@ -16,11 +16,13 @@ from typing import TYPE_CHECKING
 
 from flint import arb
 
-from symflex.balls import UndecidedError, bits_for_digits, precision, precisions
+from symflex.balls import Branching, Open, UndecidedError, bits_for_digits, branch, precision, precisions
 from symflex.budget import spend
 
 if TYPE_CHECKING:
     from symflex.roots.networks.counting import Counter, NetworkSample
+
+    Between = tuple[NetworkSample, NetworkSample]
 
 GUARD_BITS = 64  # what the elimination of a network loses mostly; where it loses more, more are taken
 PATIENCE = 3  # secants that may leave most of an interval before it is halved
@@ -119,19 +121,27 @@ class EigenvalueSearch:
 
     def isolate(self, low: NetworkSample, high: NetworkSample, first: int, last: int | None) -> None:
         """Isolate and enclose the eigenvalues between two samples that have numbers from first to last."""
-        pending = [(low, high)]
-        while pending:
-            a, b = pending.pop()
+
+        def decide(ends: Between) -> Open[Between] | None:
+            a, b = ends
             before, behind = self._number(a), self._number(b)
             if before == behind or behind < first or (last is not None and before >= last):
-                continue
+                return None
             if behind - before == 1 and b.value - a.value < NEAR * b.value:
                 self._enclose(a, b)
-            elif self._is_close(a, b):
-                self.found[before + 1] = Eigenvalue(a, b, before + 1, behind - before)
-            else:
-                middle = self._between(a, b)
-                pending += [(middle, b), (a, middle)]
+                return None
+            return Open(ends)
+
+        def halves(ends: Between) -> list[Between]:
+            if self._is_close(*ends):
+                return []
+            middle = self._between(*ends)
+            return [(ends[0], middle), (middle, ends[1])]
+
+        search: Branching[Between, None] = branch([(low, high)], decide, halves)
+        for a, b in search.undecided:
+            before, behind = self._number(a), self._number(b)
+            self.found[before + 1] = Eigenvalue(a, b, before + 1, behind - before)
 
     def ordered(self) -> tuple[Eigenvalue, ...]:
         """Return what was found, in order."""

@@ -13,7 +13,7 @@ from math import inf
 
 from flint import acb
 
-from symflex.balls import precision
+from symflex.balls import Open, branch, precision
 from symflex.budget import entered_budget
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.counting.winding import RING, Cell, RootOnPathError, Winding
@@ -34,6 +34,9 @@ NEIGHBOURS = 1e-4  # relative radius of the disc about a root in which others ar
 FADED = 100.0  # width in ln of a ring where kernels do not vary faster further out, and roots are few
 HIGHEST = 300.0  # ln of the radius [rad/s] beyond which nothing is sought
 MODES_LIMIT = 2000  # most modes of one search; ask for further ones by a band
+
+
+Counted = tuple[Cell, int]  # a cell, and how many roots it holds
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,30 +140,29 @@ class RootSearch:
 
     def _separate(self, cell: Cell, count: int) -> tuple[list[Root], int]:
         """Return the roots in a cell known to hold ``count`` of them."""
-        roots: list[Root] = []
-        missing = 0
-        pending = [(cell, count)]
-        while pending:
-            part, number = pending.pop()
-            if number == 0:
-                continue
-            separated = self._together(part, number) if number > 0 else None
-            parts = None
-            if separated is None and part.size > CLOSEST and number > 0:
-                parts = self._split(part, number)
-            if separated is None and parts is None and number > 0:
-                separated = self._as_one(part, number)
-            if separated is not None:
-                roots.extend(separated)
-            elif parts is not None:
-                pending.extend(parts)
-            else:
+        search = branch([(cell, count)], self._decide, lambda counted: self._split(*counted) or ())
+        roots, missing = [root for found in search.decided for root in found], 0
+        for part, number in search.undecided:
+            found = self._as_one(part, number) if number > 0 else None
+            if found is None:
                 missing += max(1, abs(number) // self.function.power)
+            else:
+                roots += found
         # Beyond the axes are mirror images of others; where wavenumbers branch there may be no root.
         kept = (r for r in roots if r.multiplicity and not r.im < 0 and not (self.is_even and r.re < 0))
         return list(kept), missing
 
-    def _split(self, cell: Cell, count: int) -> tuple[tuple[Cell, int], tuple[Cell, int]] | None:
+    def _decide(self, counted: Counted) -> list[Root] | Open[Counted] | None:
+        """Return the root of a cell if it is one; a cell without any is excluded."""
+        if counted[1] == 0:
+            return None
+        together = self._together(*counted) if counted[1] > 0 else None
+        return Open(counted) if together is None else together
+
+    def _split(self, cell: Cell, count: int) -> tuple[Counted, Counted] | None:
+        """Return two parts with their counts; None for a small cell, or where a root is on every cut."""
+        if cell.size <= CLOSEST or count < 0:
+            return None
         shares: tuple[float, ...] = SHARES
         if cell.right < 0 and cell.left > pi / 2 and cell.left - cell.right >= cell.high - cell.low:
             shares = ((RIGHT_HALF - cell.right) / (cell.left - cell.right), *SHARES)
