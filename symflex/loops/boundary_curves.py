@@ -18,7 +18,7 @@ from math import floor, hypot
 
 from flint import acb, arb, fmpz_mpoly
 
-from symflex.balls import precision
+from symflex.balls import Pair, precision, status_of, two_steps
 from symflex.budget import spend
 from symflex.loops.boxes import BITS, Box, CharacteristicFunction, FirstOrder, OpenBox
 from symflex.transfer import TransferFunction
@@ -44,8 +44,8 @@ class Tracer:
 
     def steps(
         self, point: Point, free: int, reach: float = 0.0, rise: float = 0.0
-    ) -> tuple[list[arb], arb, arb] | None:
-        """Return the slopes within ``reach`` and ``rise``, and the steps of parameter and frequency."""
+    ) -> tuple[list[arb], Pair] | None:
+        """Return the slopes within ``reach`` and ``rise``, and Newton's steps of parameter and frequency."""
         spend()
         ends = []
         for k, (low, high) in enumerate(self.ranges):
@@ -58,10 +58,9 @@ class Tracer:
         ((value, slopes),) = values.at(acb(0, arb(point[2])), [self.which], near)
         turn = slope * acb(0, 1)
         sizes = [float(high - low) for low, high in self.ranges]
-        turns = [each * size / turn for each, size in zip(slopes, sizes, strict=True)]
-        step = -(value / turn).imag / turns[free].imag
-        climb = -(value / turn).real - turns[free].real * step
-        return ([x.imag for x in turns], step, climb) if step.is_finite() and climb.is_finite() else None
+        by_parts = [each * size for each, size in zip(slopes, sizes, strict=True)]
+        steps = two_steps(value, by_parts[free], turn)
+        return None if steps is None else ([(each / turn).imag for each in by_parts], steps)
 
     def corrected(self, point: Point, free: int) -> Point | None:
         """Return the point of the curve with the other parameter as it is; None unless it is proved."""
@@ -70,15 +69,19 @@ class Tracer:
             known = self.steps(_moved(point, free, x, omega), free)
             if known is None:
                 return None
-            step, climb = (float(each.mid()) for each in known[1:])
+            step, climb = (float(each.mid()) for each in known[1])
             if abs(step) > LONGEST or (omega and abs(climb) > omega / 2):
                 return None
-            x, omega = x + step, omega + climb if omega else omega
+            x, omega = x - step, omega - climb if omega else omega
             if abs(step) < CONVERGED and abs(climb) <= CONVERGED * omega:
                 break
         found, rise = _moved(point, free, x, omega), ROOM * RADIUS * omega
         known = self.steps(found, free, RADIUS, rise)
-        return found if known and abs(known[1]) < RADIUS and (not omega or abs(known[2]) < rise) else None
+        if known is None:
+            return None
+        unknowns = 2 if omega else 1  # a real root rests at 0
+        status = status_of(known[1][:unknowns], (arb(RADIUS), arb(rise))[:unknowns])
+        return found if status == "one" else None
 
     def traced(self, start: Point) -> list[Point]:
         """Return a curve through a point of it, to the ends of the ranges, or as far as it is proved."""

@@ -21,7 +21,7 @@ from itertools import pairwise
 
 from flint import acb, arb
 
-from symflex.balls import Open, ball, bits_for_digits, branch, precision
+from symflex.balls import Open, ball, bits_for_digits, branch, precision, status_of, two_steps
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.expressions import names_among
 from symflex.loops.boxes import BITS, Box, CharacteristicFunction, Ends, OpenBox
@@ -260,13 +260,10 @@ def pair_that_crosses(
         near = values.generators(s)
         ((_, slope),), ((_, (rate,)),) = values.around(s, [*which], near), values.at(s, [*which], near)
         ((value, _),) = values.at(omega, [*which], near)
-        # The root is at omega - x.real, where x.imag vanishes.
         turn = slope * acb(0, 1)
-        ways, off = rate / turn, value / turn
-        step = -off.imag / ways.imag
-        climb = off.real + ways.real * step
-        is_proved = abs(step) < values.halves[0] and abs(climb) < rise
-    return (2 if ways.imag > 0 else -2) if is_proved else 0
+        status = status_of(two_steps(value, turn, rate), (rise, values.halves[0]))
+        moves_right = bool((rate / turn).imag > 0)
+    return (2 if moves_right else -2) if status == "one" else 0
 
 
 def _is_narrow(ends: Ends, limits: Ends, digits: int) -> bool:
