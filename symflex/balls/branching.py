@@ -19,12 +19,14 @@ from dataclasses import dataclass, field
 from itertools import count
 from typing import Generic, Literal, TypeVar
 
+from symflex.balls.precision import UndecidedError
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic
 
 Region = TypeVar("Region")
 Decided = TypeVar("Decided")
 Order = Literal["depth", "breadth"]
+Part = tuple[float, float]  # of a path, or of frequencies
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,3 +126,30 @@ def branch(
     found.unseen = len(waiting)
     found.undecided += [region for *_, region in sorted(waiting)]
     return found
+
+
+def covered(
+    decide: Callable[[float, float], Decided | None], parts: int, shortest: float
+) -> list[tuple[float, float, Decided]]:
+    """Return pieces of the path [0, 1] with what is decided on them, at first so many, halved until it is.
+
+    UndecidedError where a piece would be shorter than ``shortest``.
+
+    >>> covered(lambda a, b: "short" if b - a < 0.3 else None, 2, 0.1)
+    [(0.0, 0.25, 'short'), (0.25, 0.5, 'short'), (0.5, 0.75, 'short'), (0.75, 1.0, 'short')]
+    """
+
+    def decided_on(span: Part) -> tuple[float, float, Decided] | Open[Part]:
+        decided = decide(*span)
+        return Open(span) if decided is None else (*span, decided)
+
+    def halves(span: Part) -> list[Part]:
+        low, high = span
+        middle = (low + high) / 2
+        return [] if high - low < 2 * shortest else [(low, middle), (middle, high)]
+
+    whole = [(k / parts, (k + 1) / parts) for k in range(parts)]
+    search = branch(whole, decided_on, halves, until=lambda found, _: bool(found.undecided))
+    if search.undecided:
+        raise UndecidedError
+    return search.decided

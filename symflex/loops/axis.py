@@ -17,7 +17,17 @@ from typing import TypeVar
 from flint import acb, arb, fmpz_mpoly
 
 from symflex.algebra import Factored
-from symflex.balls import NEWTON_STEPS, STALLED, Open, ball, bits_for_digits, branch, narrowed, precision
+from symflex.balls import (
+    NEWTON_STEPS,
+    STALLED,
+    Open,
+    Part,
+    ball,
+    bits_for_digits,
+    branch,
+    narrowed,
+    precision,
+)
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, SymflexError
 from symflex.model.model import IMAGINARY
@@ -32,7 +42,6 @@ NARROWEST = 1e-11  # relative width of an interval that is not halved any more
 MOST_INTERVALS = 40_000  # of one search, before it is given up
 
 Place = TypeVar("Place")
-Span = tuple[float, float]  # an interval of frequencies [rad/s]
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +56,7 @@ def find_on_axis(
     on: Callable[[arb, int], tuple[Place, Place]],
     equation: Callable[[Place], tuple[arb, arb]],
     is_excluded: Callable[[Place], bool],
-    limits: Span,
+    limits: Part,
     digits: int,
     most: int = 0,
 ) -> AxisRoots:
@@ -56,7 +65,7 @@ def find_on_axis(
     ``equation`` returns value and derivative; what is left after ``most`` intervals is undecided, else SF505.
     """
 
-    def decide(ends: Span) -> arb | Open[Span] | None:
+    def decide(ends: Part) -> arb | Open[Part] | None:
         ball = ball_of(ends)
         around, centre = on(ball, BITS)
         with precision(BITS):
@@ -83,14 +92,14 @@ def find_on_axis(
     return AxisRoots(tuple(search.decided), joined(map(ball_of, search.undecided)))
 
 
-def ball_of(ends: Span) -> arb:
+def ball_of(ends: Part) -> arb:
     """Return the ball around an interval of frequencies."""
     with precision(BITS):
         low, high = map(arb, ends)
         return (low + high) / 2 + arb(0, ((high - low) / 2).upper())
 
 
-def halves(ends: Span) -> list[Span]:
+def halves(ends: Part) -> list[Part]:
     """Return both parts of an interval of frequencies, none of one that is narrow."""
     low, high = ends
     # Off the middle, so that a root there does not stay on an end for ever.
@@ -98,7 +107,7 @@ def halves(ends: Span) -> list[Span]:
     return [] if high - low < NARROWEST * high else [(low, cut), (cut, high)]
 
 
-def pieces(low: float, high: float, ratio: float) -> list[Span]:
+def pieces(low: float, high: float, ratio: float) -> list[Part]:
     """Return intervals between two frequencies; the ends of each have a ratio."""
     ends = [low]
     while ends[-1] < high:

@@ -17,9 +17,9 @@ from math import inf
 
 from flint import acb, arb
 
-from symflex.balls import Open, branch, precision
+from symflex.balls import Open, Part, branch, precision
 from symflex.errors import Diagnostic, ModelError, UsageError
-from symflex.loops.axis import Span, pieces
+from symflex.loops.axis import pieces
 from symflex.roots import figure
 from symflex.roots.root import hertz, real_json
 from symflex.transfer import BoundTransferFunction
@@ -169,7 +169,7 @@ def _first_exit(state_on: Callable[[arb], tuple[int, str]], low: float, high: fl
         if state != 1:
             return _Exit(None, state == -1, begins=False, cause=cause)
 
-        def exit_on(ends: Span) -> _Exit | Open[Span] | None:
+        def exit_on(ends: Part) -> _Exit | Open[Part] | None:
             low, high = ends
             span = arb(low).union(arb(high))
             state, cause = state_on(span)
@@ -181,7 +181,7 @@ def _first_exit(state_on: Callable[[arb], tuple[int, str]], low: float, high: fl
                 return _Exit(span, after == -1, begins=True, cause=why or cause)
             return Open(ends)
 
-        def halves(ends: Span) -> list[Span]:
+        def halves(ends: Part) -> list[Part]:
             low, high = ends
             middle = low + (high - low) / 2
             return [(low, middle), (middle, high)]

@@ -303,7 +303,7 @@ def _h2_norm(above: PolynomialInS, below: PolynomialInS, digits: int) -> arb:
 
 
 @dataclass(frozen=True, slots=True)
-class Piece:
+class AxisPiece:
     """A piece of the axis with the values on it."""
 
     size: float  # magnitude in the middle
@@ -324,7 +324,7 @@ class Piece:
         return bool(value < 0) or bool(middle + slope * (self.place - self.place.mid()) < 0)
 
 
-def _largest_first(pieces: Sequence[Piece]) -> list[Piece]:
+def _largest_first(pieces: Sequence[AxisPiece]) -> list[AxisPiece]:
     return sorted(pieces, key=lambda piece: piece.size, reverse=True)
 
 
@@ -344,7 +344,7 @@ class _Pieces:
         self.count, self.digits = 0, min(asked.digits, MOST_DIGITS)
         self.best, self.most = arb(0), arb(0)  # a magnitude that is come near; what bounds those far out
         self.beyond: arb | None = None  # where those begin, if one may be as large; infinite if it is less
-        self.near: list[Piece] = []  # all that may contain the peak
+        self.near: list[AxisPiece] = []  # all that may contain the peak
 
     def peak(self) -> Peak:
         """Return the peak."""
@@ -427,7 +427,7 @@ class _Pieces:
         )
         return search.decided[0] if search.decided else None
 
-    def _decide(self, piece: Piece) -> arb | Open[Piece] | None:
+    def _decide(self, piece: AxisPiece) -> arb | Open[AxisPiece] | None:
         """Drop a piece below the level, if it is near the best with a note of it; return a pole met there."""
         self.count += 1
         if piece.is_below(self._level()):
@@ -445,8 +445,8 @@ class _Pieces:
             raise BudgetError(Diagnostic("SF505", message, None, "give a --band without it"))
         return Open(piece)
 
-    def _piece(self, place: arb) -> Piece:
+    def _piece(self, place: arb) -> AxisPiece:
         around, centre = self.function.on(place, BITS)
         size = abs(centre.a) / abs(centre.b)
         self.best = size.lower() if size.is_finite() and size > self.best else self.best
-        return Piece(float(size.mid()), place, around, centre)
+        return AxisPiece(float(size.mid()), place, around, centre)

@@ -14,8 +14,18 @@ from functools import cached_property
 
 from flint import acb, arb, arb_series
 
-from symflex.balls import Branching, Open, Pair, bits_for_digits, branch, newton_box, precision, two_steps
-from symflex.loops.axis import BITS, FIRST_RATIO, Span, ball_of, halves, joined, pieces
+from symflex.balls import (
+    Branching,
+    Open,
+    Pair,
+    Part,
+    bits_for_digits,
+    branch,
+    newton_box,
+    precision,
+    two_steps,
+)
+from symflex.loops.axis import BITS, FIRST_RATIO, ball_of, halves, joined, pieces
 from symflex.loops.loop_function import LoopFunction
 
 Weights = Callable[[arb], Sequence[arb_series]]
@@ -117,7 +127,7 @@ class AxisPoints:
 class OpenGains:
     """An interval of frequencies, and the gains at which a pole may be there."""
 
-    ends: Span
+    ends: Part
     gains: Sequence[GainTree]
 
     @property
@@ -130,7 +140,7 @@ class OpenGains:
         return [replace(self, ends=ends) for ends in halves(self.ends)]
 
 
-def find_axis_points(function: LoopFunction, tree: GainTree, limits: Span, digits: int) -> AxisPoints | None:
+def find_axis_points(function: LoopFunction, tree: GainTree, limits: Part, digits: int) -> AxisPoints | None:
     """Return all between two frequencies, for the gains of a tree; None where they are too many intervals."""
     proved: list[Pair] = []
 

@@ -314,7 +314,7 @@ def _sum_of(terms: Sequence[ExponentialTerm], t: arb) -> arb:
 
 
 @dataclass(frozen=True, slots=True)
-class Span:
+class TimeSpan:
     """Times between two, on which a response is one piece."""
 
     piece: Piece
@@ -322,17 +322,17 @@ class Span:
     high: arb
 
     @property
-    def halves(self) -> tuple[Span, Span]:
+    def halves(self) -> tuple[TimeSpan, TimeSpan]:
         """Both halves, the earlier one first."""
         middle = ((self.low + self.high) / 2).mid()
-        return Span(self.piece, self.low, middle), Span(self.piece, middle, self.high)
+        return TimeSpan(self.piece, self.low, middle), TimeSpan(self.piece, middle, self.high)
 
 
 @dataclass(frozen=True, slots=True)
-class Values:
+class SpanValues:
     """A ball around the values of a piece between two times."""
 
-    span: Span
+    span: TimeSpan
     around: arb  # but for the rest
 
     @property
@@ -353,11 +353,11 @@ class NormalisedResponse:
         self.pieces = pieces
         self.is_lost = False  # something could not be decided
 
-    def parts(self, until: arb) -> list[Span]:
+    def parts(self, until: arb) -> list[TimeSpan]:
         """Return the pieces up to a time, each with when it begins and ends."""
         starts = [piece.begins for piece in self.pieces[1:] if piece.begins < until]
         ends = zip((arb(0), *starts), (*starts, until), strict=True)
-        return [Span(piece, *each) for piece, each in zip(self.pieces, ends, strict=False)]
+        return [TimeSpan(piece, *each) for piece, each in zip(self.pieces, ends, strict=False)]
 
     def quiet(self, level: float) -> arb | None:
         """Return a time from which on the response is closer to its end than a level; None without one."""
@@ -379,13 +379,13 @@ class NormalisedResponse:
         shortest = until * arb(2) ** -HALVINGS
         best, work = 1 + arb(close), 0
 
-        def values_on(span: Span) -> Values:
+        def values_on(span: TimeSpan) -> SpanValues:
             nonlocal best
             around = span.piece.over(span.low, span.high)
             best = best.max((around - span.piece.rest).lower())
-            return Values(span, around)
+            return SpanValues(span, around)
 
-        def decide(values: Values) -> Values | Open[Values] | None:
+        def decide(values: SpanValues) -> SpanValues | Open[SpanValues] | None:
             nonlocal work
             if values.most < best:
                 return None
@@ -446,7 +446,7 @@ class NormalisedResponse:
         unclear: arb | None = None  # where it may be either, between
         work = 0
 
-        def decide(span: Span) -> arb | Open[Span] | None:
+        def decide(span: TimeSpan) -> arb | Open[TimeSpan] | None:
             nonlocal before, unclear, work
             work += len(span.piece.terms)
             above = span.piece.over(span.low, span.high) - (level - sign * span.piece.rest)

@@ -2,7 +2,7 @@
 
 from flint import acb, arb
 
-from symflex.balls import narrowed, stays_inside
+from symflex.balls import narrowed, newton_box, status_of, stays_inside, two_steps
 
 
 def step(box):
@@ -36,3 +36,34 @@ def test_a_root_stays_in_its_box_while_that_becomes_smaller():
     box = arb(1.4, 0.1)
     assert narrowed(box, lambda _: arb(1.4, 0.2), 5, 0.5).rad() == box.rad()
     assert narrowed(box, lambda _: arb("nan"), 5, 0.5).rad() == box.rad()
+
+
+def circle_steps(box, bits):
+    """Return the steps of ``x^2 + y^2 - 5 + j (x y - 2) = 0``, which holds at (1, 2) and (2, 1)."""
+    x, y = box
+    a, b = x.mid(), y.mid()
+    return two_steps(acb(a * a + b * b - 5, a * b - 2), acb(2 * x, y), acb(2 * y, x))
+
+
+def test_a_box_of_two_unknowns_has_one_root_none_or_is_undecided():
+    for middle, reach, status in [
+        ((1.01, 1.99), 0.1, "one"),
+        ((2.0, 1.0), 0.2, "one"),
+        ((1.3, 2.3), 0.1, "none"),
+        ((1.5, 1.5), 0.6, "undecided"),  # both
+        ((1.5, 1.5), 0.01, "undecided"),  # slopes are parallel where x = y
+    ]:
+        found, root = newton_box(circle_steps, (arb(middle[0], reach), arb(middle[1], reach)), 96, 300)
+        assert found == status, middle
+        if status == "one":
+            assert (root[0] * root[1]).contains(2)
+            assert min(x.rel_accuracy_bits() for x in root) > 300
+
+
+def test_a_step_as_long_as_the_box_proves_nothing():
+    # At the rim: a step of exactly the reach may end on a root there, inside or not.
+    for step, status in [(0.5, "undecided"), (0.5 - 2.0**-40, "one"), (0.5 + 2.0**-40, "none")]:
+        for steps in ((arb(step), arb(0)), (arb(0), arb(-step))):
+            assert status_of(steps, (arb(0.5), arb(0.5))) == status
+    assert status_of((arb("nan"), arb(0)), (arb(1), arb(1))) == "undecided"
+    assert status_of(None, (arb(1), arb(1))) == "undecided"
