@@ -2,7 +2,7 @@
 
 Input: a tree. Output: an equal tree, expanded, each of whose terms has one sine or cosine at most.
 
-    cos(a + b)*cos(a) + sin(a + b)*sin(a) = cos(b),    cos(a)^2 + sin(a)^2 = 1
+    cos(a + b)*cos(a) + sin(a + b)*sin(a) = cos(b),    cos(a)^2 + sin(a)^2 = 1,    cos(a + pi/2) = -sin(a)
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from symflex.expressions.format import format_expression
 from symflex.expressions.nodes import (
     Call,
     Expression,
+    Name,
     Negative,
     Number,
     Power,
@@ -39,6 +40,7 @@ MOST_TERMS: Final = 500  # beyond them a product is left alone: nobody reads as 
 LONGEST: Final = 500  # parts of an expression that is tried
 ONE: Final[Term] = ((), "", ())
 HALF: Final = Fraction(1, 2)
+PI: Final = Name("pi")
 
 
 def shorter(expression: Expression) -> Expression:
@@ -142,7 +144,15 @@ def _times(left: Terms, right: Terms) -> Terms:
 
 
 def _turned(powers: Combination, kind: str, angle: Mapping[Expression, Fraction], times: Fraction) -> Terms:
-    """Return a sine or cosine whose angle begins with a plus, or what it is at 0."""
+    """Return a sine or cosine whose angle begins with a plus, or what it is at 0, without quarter turns."""
+    turn = 2 * angle.get(PI, Fraction(0))
+    if turn.denominator == 1:
+        angle = {base: n for base, n in angle.items() if base != PI}
+        if turn % 2:
+            times = -times if (kind == "cos") == (turn % 4 == 1) else times
+            kind = "sin" if kind == "cos" else "cos"
+        elif turn % 4:
+            times = -times
     combination = _gathered(angle)
     if not combination:
         return {(powers, "", ()): times} if kind == "cos" else {}

@@ -127,12 +127,22 @@ class Solving:
         start = {p: self.constants.known.pop(p) for p in names if p in self.constants.known}
         may_vanish = start.keys() & self.constants.signed
         rows = [_without_factor(each, wanted, may_vanish) for each in left]
-        while found := [
-            (p, solution, each)
-            for each in rows
-            for p in wanted
-            if (solution := self._formula(each.residual, p, wanted)) is not None
-        ]:
+        while not self.reader.problems:
+            found = [
+                (p, solution, each)
+                for each in rows
+                for p in wanted
+                if (solution := self._formula(each.residual, p, wanted)) is not None
+            ]
+            if not found:
+                # Once these have values, others that have no declared one may have formulas.
+                first, known = _first_block(rows, wanted, start)
+                if not known:
+                    break
+                self._solve_by_value([], first, known, start)
+                rows = [r for r in rows if r not in first]
+                wanted = [p for p in wanted if p not in known]
+                continue
             others = [len({Name(p) for p in wanted} & {*nodes(solution)}) for _, solution, _ in found]
             unknown, solution, row = found[others.index(min(others))]
             if unknown in self.constants.signed and isinstance(solution, Call) and start.get(unknown, 1) < 0:
@@ -393,6 +403,17 @@ class _Search:
             signs = [random.choice((-1, 1)) if may else 1 for may in self._may_be_negative]
             powers = [random.uniform(-decades / 2, decades / 2) for _, decades in sizes]
             yield [n * x * arb(10) ** p for n, (x, _), p in zip(signs, sizes, powers, strict=True)]
+
+
+def _first_block(
+    rows: Sequence[Left], wanted: Sequence[str], start: Collection[str]
+) -> tuple[list[Left], list[str]]:
+    """Return the equations that declared names alone solve, and these names, if other rows have more."""
+    held = [[p for p in wanted if Name(p) in nodes(r.residual)] for r in rows]
+    first = [r for r, own in zip(rows, held, strict=True) if own and {*own} <= {*start}]
+    known = [p for p in wanted if any(Name(p) in nodes(r.residual) for r in first)]
+    is_square = len(first) == len(known) and any(not {*own} <= {*start} for own in held)
+    return (first, known) if is_square else ([], [])
 
 
 def _distance(x: arb, start: arb) -> float:

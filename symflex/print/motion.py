@@ -95,7 +95,8 @@ def solved_text(model: Model, digits: int = DIGITS, above: str | None = None) ->
 def solved_values(model: Model, digits: int = DIGITS) -> list[tuple[str, str]]:
     """Return names and values that were solved for: ``0.516996 um (radius 6.0e-9 um, declared 0.1 um)``."""
     shown = []
-    for v, unit in _solved(model):
+    for v, own in _solved(model):
+        unit = "" if own == "1" else own
         from symflex.roots.root import decimals  # imports numpy
 
         printed = decimals(v.ball, arb(0), digits).readable

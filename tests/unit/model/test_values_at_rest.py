@@ -381,3 +381,47 @@ def test_formulas_keep_numbers_at_rest_as_names_that_can_be_set():
     assert str(load(text).transfer_function("Y/u")) == "Y/u = 1/(s + 2*k*x_0)"
     moved = load(text, values={"x_0": "5"}).transfer_function("Y/u").bind()
     assert complex(moved(0)) == pytest.approx(1 / 30)
+
+
+def test_what_has_no_declared_value_follows_from_what_has_one():
+    """A slider-crank on a spring: the torque that holds it is dV/dtheta, V = k (x - c)^2/2."""
+    model = load(
+        """
+        symflex = 1
+        parameters = { r = 0.06, l = 0.2, k = 8e3, c = 0.2, theta_0 = "50 deg", beta_0 = "13 deg", x_0 = 0.2 }
+        inputs = { T = {} }
+        outputs = { angle = "theta" }
+        [energy]
+        coordinates = ["theta", "beta", "x"]
+        kinetic = "x'^2/2"
+        potential = "k*(x - c)^2/2"
+        constraints = ["r*cos(theta) + l*cos(beta) = x", "r*sin(theta) = l*sin(beta)"]
+        forces = { theta = "T" }
+        [operating_point]
+        theta = "theta_0"
+        beta = "beta_0"
+        x = "x_0"
+        T = "T_0"
+        solve = ["beta_0", "x_0", "T_0"]
+        """
+    )
+    found = {v.name: float(v.value) for v in model.resolved.operating_point.found}
+    theta = np.radians(50)
+    beta = np.arcsin(0.3 * np.sin(theta))
+    x = 0.06 * np.cos(theta) + 0.2 * np.cos(beta)
+    slope = -0.06 * np.sin(theta) - 0.06 * np.cos(theta) * np.tan(beta)
+    expected = {"beta_0": np.degrees(beta), "x_0": x, "T_0": 8000 * (x - 0.2) * slope}
+    assert {n: found[n] for n in expected} == pytest.approx(expected, rel=1e-10)
+
+
+def test_a_value_without_a_unit_is_printed_without_one(tmp_path, capsys):
+    path = tmp_path / "joint.toml"
+    path.write_text(
+        "symflex = 1\nparameters = { k = '4 N*m', w = '2 N*m', J = '1 kg*m^2', a = '30 deg' }\n"
+        "inputs = { r = { unit = '1' } }\noutputs = { Q = 'q' }\n"
+        "[equations]\nunknowns = ['q']\nequations = [\"J*q'' + k*q + w*cos(q) = k*r\"]\n"
+        "[operating_point]\nq = 'a'\nsolve = ['r']\n"
+    )
+    assert run(["check", str(path)]) == 0
+    # r_0 = a + w cos(a)/k
+    assert "solved at rest: r_0 = 0.956611 (radius 4.8e-7)" in capsys.readouterr().out
