@@ -130,7 +130,7 @@ def _sweep(name: str) -> str:
 
 
 def _limits(model: Model, parameter: ModelParameter, given: StabilityOptions) -> Ends:
-    """Return a parameter's range, asked for, declared, or about its value; from 0 if of signals alone."""
+    """Return a parameter's range, asked for, declared, or about its value; from 0 if no part has it."""
     name = parameter.name
     of_all = given.limits if len(given.over) == 1 else None
     stated = {n: (low, high) for n, low, high in given.ranges}.get(name, of_all)
@@ -141,9 +141,8 @@ def _limits(model: Model, parameter: ModelParameter, given: StabilityOptions) ->
     elif parameter.value is None or parameter.value.pi_power or not parameter.value.rational:
         low = high = None
     else:
-        values = [e for use in model.elements for _, e in use.values] + [
-            d.expression for d in model.definitions
-        ]
+        values = [e for use in model.elements if not use.element.is_source for _, e in use.values]
+        values += [d.expression for d in model.definitions]
         is_signal = not model.fields and not any(names_among(e, {name}) for e in values)
         value = parameter.value.rational
         low, high = sorted(

@@ -234,7 +234,10 @@ def _limits(reader: Reader, table: TableValue, p: DeclaredParameter) -> tuple[Qu
             scaled = (end.magnitude * unit.scale, end.pi_power + unit.pi_power)
             end = replace(one_of(unit_text), magnitude=scaled[0], pi_power=scaled[1])
         problem = _misfit(end, what, p.name, unit_text, value.span)
-        if problem := problem or without_sign(p.name, end, p.assume, value.span):
+        if problem is None and (problem := without_sign(p.name, end, p.assume, value.span)) is not None:
+            message = problem.message.replace(" is", " has a range with an end that is", 1)
+            problem = replace(problem, message=message)
+        if problem is not None:
             reader.take((problem,))
             return None
         ends.append(end)

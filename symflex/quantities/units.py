@@ -170,8 +170,10 @@ PREFIXABLE_UNITS: Final[dict[str, Unit]] = {
 
 PLAIN_UNITS: Final[dict[str, Unit]] = {
     "t": _KG.scaled(Fraction(1000)),
+    "tf": _KG.scaled(Fraction(1000)) * _GRAVITY,
     "min": _MIN,
     "h": _HOUR,
+    "day": _HOUR.scaled(Fraction(24)),
     "\u00b0": _DEG,
     "arcmin": _DEG.scaled(Fraction(1, 60)),
     "arcsec": _DEG.scaled(Fraction(1, 3600)),
@@ -211,6 +213,7 @@ PLAIN_UNITS: Final[dict[str, Unit]] = {
     "cfm": _FOOT**3 / _MIN,
     "cc": _LITRE.scaled(_MILLI),
     "mph": _FOOT.scaled(Fraction(5280)) / _HOUR,
+    "knot": _M.scaled(Fraction(1852)) / _HOUR,
     "rps": _CYCLE / _S,
     "gauss": (_WB / _M**2).scaled(Fraction(1, 10_000)),
     "Btu": _J.scaled(Fraction("1055.05585262")),
@@ -225,6 +228,8 @@ _INSTEAD: Final[dict[str, str]] = {
         "ms": "msec msecs",
         "min": "mins minute minutes",
         "h": "hr hrs hour hours",
+        "day": "d days",
+        "knot": "knots kn kts",
         "m": "meter meters metre metres mtr",
         "mm": "millimeter millimeters millimetre millimetres",
         "um": "micron microns",

@@ -246,6 +246,22 @@ def test_what_enters_rationally_is_answered_alike_as_a_gain_and_as_a_parameter()
         assert over["phase_margins"] == []  # a parameter closes no loop
 
 
+def test_a_gain_in_the_value_of_a_source_is_examined_as_one_in_a_signal() -> None:
+    text = """
+        symflex = 1
+        parameters = { m = "8 kg", b = "60 N*s/m", k = "20 kN/m", g = "7 N*s/m" }
+        inputs = { F = { force = "x" } }
+        outputs = { X = "x" }
+        [elements]
+        body = { type = "mass", at = "x", m = "m" }
+        wall = { type = "spring", between = ["x", "ground"], k = "k" }
+        loss = { type = "damper", between = ["x", "ground"], b = "b" }
+        act = { type = "force_source", at = "x", f = "g*s*x" }
+        """
+    over = loads(text).stability(over="g").to_json_dict()
+    assert float(over["boundaries"][0]["gain"]["value"]) == 60  # g = b, more than twice the declared value
+
+
 def test_a_chart_says_at_every_point_what_holds_there() -> None:
     chart = LAG.stability(over=("a", "T"), ranges={"a": (0, 4), "T": (0, 3)}, resolve=0.02)
     assert chart.certified

@@ -40,7 +40,8 @@ PINT_UNITS = {
     "mmH2O": "centimeter_H2O*millimeter/centimeter", "cmH2O": "centimeter_H2O",
     "inH2O": "inch_H2O", "gal": "gallon", "gpm": "gallon/minute",
     "lpm": "liter/minute", "cfm": "foot^3/minute", "cc": "cubic_centimeter", "mph": "mile/hour",
-    "rps": "turn/second", "gauss": "millitesla*decitesla/tesla", "Btu": "Btu_it",
+    "rps": "turn/second", "day": "day", "knot": "knot",
+    "tf": "metric_ton*standard_gravity", "gauss": "millitesla*decitesla/tesla", "Btu": "Btu_it",
 }  # fmt: skip
 
 BASE_OF_PINT = {
