@@ -49,6 +49,16 @@ ANY: Signs = (-1, 1)
 POSITIVE: Signs = (1, 1)
 
 
+def is_zero(value: arb) -> bool:
+    """Tell whether a value may be zero, which a random one is only if all are."""
+    return value.contains(0)
+
+
+def is_positive(value: arb) -> bool:
+    """Tell whether a value has a square root."""
+    return not value < 0
+
+
 @dataclass
 class Constants:
     """What is constant: ``expressions`` of names, None for parameters, and ``known``, the values of some."""
@@ -106,14 +116,16 @@ class Constants:
 
     def vanishes(self, residual: Expression, fixed: Mapping[str, arb] | None = None) -> bool:
         """Tell whether an expression is zero for all values but those fixed, or with probability 0 is not."""
-        return self._vanishes(residual, lambda _: dict(fixed or {}))
+        if is_number(residual, 0):
+            return True
+        return self._always(is_zero, residual, lambda _: dict(fixed or {}))
 
-    def deciding(self, residual: Expression) -> set[str] | None:
-        """Return the parameters whose values make an expression zero, a root having one sign only near them.
+    def deciding(self, holds: Callable[[arb], bool], expression: Expression) -> set[str] | None:
+        """Return the parameters whose values decide that something holds of an expression.
 
-        None if it is not zero near the declared values either.
+        None if it does not near the declared values either: a root of a sum may have one sign only there.
         """
-        names = self.behind(residual) & self.known.keys()
+        names = self.behind(expression) & self.known.keys()
 
         def scaled(kept: Collection[str]) -> Callable[[Random], dict[str, arb]]:
             def draw(random: Random) -> dict[str, arb]:
@@ -121,19 +133,23 @@ class Constants:
 
             return draw
 
-        if not self._vanishes(residual, scaled(names)):
+        if not self._always(holds, expression, scaled(names)):
             return None
-        own = {p for p in names if not self._vanishes(residual, scaled(names - {p}))}
-        return own if self._vanishes(residual, scaled(own)) else names
+        own = {p for p in names if not self._always(holds, expression, scaled(names - {p}))}
+        return own if self._always(holds, expression, scaled(own)) else names
 
-    def _vanishes(self, residual: Expression, values: Callable[[Random], dict[str, arb]]) -> bool:
-        if is_number(residual, 0):
-            return True
+    def _always(
+        self,
+        holds: Callable[[arb], bool],
+        expression: Expression,
+        values: Callable[[Random], dict[str, arb]],
+    ) -> bool:
+        """Tell whether something holds wherever an expression has a value."""
         random, agreeing = Random(1), 0
         for _ in range(TRIALS):
             with precision(BITS):
-                value = self.value(residual, values(random), random)
-                if value.is_finite() and not value.contains(0):
+                value = self.value(expression, values(random), random)
+                if value.is_finite() and not holds(value):
                     return False
                 agreeing += bool(value.is_finite())
             if agreeing == AGREEING:

@@ -45,7 +45,7 @@ from symflex.expressions import (
 from symflex.expressions.derivative import SLOPES, derivative, divisor, simplified, without_brackets
 from symflex.expressions.nodes import Call, Differentiated
 from symflex.expressions.trigonometric import shorter
-from symflex.model.constants_at_rest import Constants
+from symflex.model.constants_at_rest import Constants, is_zero
 from symflex.model.declarations import DeclaredParameter
 from symflex.model.model import Assumption, Definition, FoundValue, OperatingPoint, Signal
 from symflex.model.reading import QuantityLiteral, Reader, literal_value
@@ -472,7 +472,7 @@ class _AboutRest:
                 continue
             if self.constants.vanishes(each.residual, numbers):
                 self.used |= self.constants.behind(each.residual) & {*numbers}
-            elif (deciding := self.constants.deciding(each.residual)) is not None:
+            elif (deciding := self.constants.deciding(is_zero, each.residual)) is not None:
                 self.used |= deciding
             else:
                 self._note_left(each)

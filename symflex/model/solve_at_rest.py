@@ -45,7 +45,7 @@ from symflex.expressions import (
     sum_of,
 )
 from symflex.expressions.derivative import derivative, simplified
-from symflex.model.constants_at_rest import BITS, Constants
+from symflex.model.constants_at_rest import BITS, Constants, is_positive, is_zero
 from symflex.model.declarations import assuming
 from symflex.model.model import Definition, FoundValue, ModelParameter
 from symflex.model.reading import Reader, literal_value
@@ -149,6 +149,9 @@ class Solving:
                 solution = negative(solution)  # of two roots, the declared
             wanted.remove(unknown)
             self.constants.expressions[unknown] = solution
+            root = solution.operand if isinstance(solution, Negative) else solution
+            if isinstance(root, Call):  # whose square alone may be left in formulas
+                self.used |= self.constants.deciding(is_positive, root.argument) or set()
             self.definitions.append(Definition(unknown, solution, "", row.equation.span))
             if (pair := _one_call(row.residual, unknown, [unknown, *wanted])) is not None:
                 self.calls |= {pair[0]: replace_values(pair[1], self.calls)}
@@ -175,7 +178,7 @@ class Solving:
         if (formula := _inverted(residual, unknown, wanted)) is None:
             return None
         # A root has one sign, and an arctangent does not take every value.
-        deciding = self.constants.deciding(simplified(residual, {unknown: formula}))
+        deciding = self.constants.deciding(is_zero, simplified(residual, {unknown: formula}))
         if deciding is None:
             return None
         self.used |= deciding

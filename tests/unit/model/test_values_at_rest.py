@@ -192,6 +192,19 @@ def test_a_root_that_has_one_sign_near_the_declared_values_is_solved_there_alone
     assert _refused(given.replace("w_0 = 0.001", "w_0 = 0.006"))
 
 
+def test_a_square_that_is_solved_for_is_not_followed_to_where_it_is_negative():
+    # C i^2/x^2 = m g - F: no current holds the ball against F > m g = 0.4905
+    values = {"m": 0.05, "g": 9.81, "C": 1e-4, "x_0": 0.01, "F_0": 0.2, "R": 2}
+    equations = ["m*x'' = m*g - F - C*i^2/x^2", "i' + R*i = u"]
+    text = _text(values, ["x", "i"], equations, {"x": "x_0", "F": "F_0"}, ["i", "u"], ["u", "F"])
+    assert _solved(text)["i_0"] == pytest.approx((0.2905 / 1e-4) ** 0.5 * 0.01)
+    with pytest.raises(ModelError, match="would not follow it"):
+        load(text).stability(over="F_0")
+    assert load(text).stability(over="x_0").certified
+    with pytest.raises(SpecError, match="has no value at the operating point"):
+        loads(text.replace("F_0 = 0.2", "F_0 = 0.6"))
+
+
 def test_formulas_have_what_a_function_is_at_rest_in_its_place():
     # A h' = q - w - a sqrt(2 g h): the slope is a g/sqrt(2 g h) = a^2 g/(q - w).
     tf = load(_tank()).transfer_function("Y/q")
