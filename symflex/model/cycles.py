@@ -55,8 +55,9 @@ from symflex.model.analysis import lines_in_order
 from symflex.model.declarations import one_of
 from symflex.model.linearity import rational_exponent
 from symflex.model.model import Definition, Published, rewritten
+from symflex.model.network import AsWritten
 from symflex.model.reading import QuantityLiteral, Reader
-from symflex.model.units import AsWritten, constant_measure, counts_cycles
+from symflex.model.units import constant_measure, counts_cycles
 from symflex.quantities import DIMENSIONLESS, Dimension, Quantity, unit_of
 
 if TYPE_CHECKING:

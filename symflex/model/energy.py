@@ -42,7 +42,7 @@ from symflex.model.constants_at_rest import Constants
 from symflex.model.declarations import in_order
 from symflex.model.fields import name_problem, parsed
 from symflex.model.model import NodeReference, OperatingPoint, Signal
-from symflex.model.network import Draft, DraftElement
+from symflex.model.network import AsWritten, Draft, DraftElement
 from symflex.model.operating_point import (
     NOWHERE,
     SMOOTH,
@@ -54,7 +54,6 @@ from symflex.model.operating_point import (
 from symflex.model.reading import Reader
 from symflex.model.settings import Setting, settled
 from symflex.model.spec import TableValue
-from symflex.model.units import AsWritten
 
 KEYS = ("coordinates", "kinetic", "potential", "dissipation", "forces", "constraints", "doc")
 EXAMPLE = 'for instance coordinates = ["x"], kinetic = "m*x\'^2/2", potential = "k*x^2/2"'

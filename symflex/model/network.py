@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from heapq import heapify, heappop, heappush
@@ -24,8 +24,10 @@ from symflex.model.model import (
     NamedExpressions,
     NetworkNode,
     NodeReference,
+    OperatingPoint,
     Output,
     PlacedBlock,
+    Published,
     Signal,
 )
 from symflex.model.reading import NAME, Reader, has_ports, signed_number
@@ -613,6 +615,21 @@ def _alike(kind: str, domain: PortDomain) -> str | None:
     return next((name for name, each in kinds.items() if own and each == (*own[:-1], domain)), None)
 
 
+class AsWritten:
+    """Reads expressions in which nothing counts cycles; :class:`symflex.model.cycles.Cycles` reads others."""
+
+    eager: Collection[str] = ()  # what is declared in cycles, and by its name in radians
+    converted: Collection[str] = ()  # what became radians somewhere
+
+    def read(self, expression: Expression, *, is_delay: bool = False) -> Expression:
+        """Return an expression, or an equation, as it is meant."""
+        return expression
+
+    def printed(self, published: Published) -> Published:
+        """Return a printed formula as it is meant."""
+        return published
+
+
 @dataclass(frozen=True, slots=True)
 class Draft:
     """What was read, before names and units were checked."""
@@ -626,7 +643,25 @@ class Draft:
     blocks: tuple[PlacedBlock, ...]
     signals: tuple[Signal, ...]
     outputs: tuple[Output, ...]
+    cycles: AsWritten  # reads frequencies as they are meant
     fields: tuple[FieldProblem, ...] = ()
+    point: OperatingPoint | None = None  # at which the equations of motion are linear
+
+    @property
+    def constants(self) -> set[str]:
+        """Names of parameters, definitions and blocks."""
+        parameters = {p.name for p in self.declared} | {p.name for p in self.inherited}
+        return parameters | {d.name for d in self.definitions} | {b.name for b in self.blocks}
+
+    @property
+    def loads(self) -> set[str]:
+        """Names of signals and inputs."""
+        return {x.name for x in self.signals} | {d.input.name for d in self.inputs}
+
+    @property
+    def names(self) -> set[str]:
+        """All names that are taken."""
+        return self.constants | self.loads | {n.name for n in self.nodes}
 
     def expressions(self) -> list[Expression]:
         """Return all expressions, of equations each side."""

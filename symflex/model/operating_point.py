@@ -48,10 +48,10 @@ from symflex.expressions.trigonometric import shorter
 from symflex.model.constants_at_rest import Constants, is_zero
 from symflex.model.declarations import DeclaredParameter
 from symflex.model.model import Assumption, Definition, FoundValue, OperatingPoint, Signal
+from symflex.model.network import AsWritten
 from symflex.model.reading import QuantityLiteral, Reader, literal_value
 from symflex.model.scope import nearest_name
 from symflex.model.solve_at_rest import EXAMPLE, Left, Solving
-from symflex.model.units import AsWritten
 from symflex.quantities import DIMENSIONLESS, Quantity
 
 if TYPE_CHECKING:

@@ -33,11 +33,9 @@ from symflex.model.boundary import (
     stretches,
     varying_constants,
 )
-from symflex.model.branches import with_branches
 from symflex.model.declarations import (
     DeclaredParameter,
     doubtful_units,
-    one_of,
     read_definitions,
     read_outputs,
     read_parameters,
@@ -45,41 +43,37 @@ from symflex.model.declarations import (
     with_formulas_defined,
 )
 from symflex.model.equations import check_unknowns, read_equations, read_state_equations
-from symflex.model.fields import read_fields, with_brackets_opened
 from symflex.model.headings import CONSEQUENCES, SECTIONS, check_header, read_section, settled_problems
 from symflex.model.linearity import check_equation, check_expression, without_signal
-from symflex.model.loss_factors import with_imaginary_unit, with_loss
+from symflex.model.loss_factors import with_loss
 from symflex.model.model import (
     Definition,
     Model,
     ModelParameter,
     NetworkNode,
-    OperatingPoint,
     Output,
     PlacedBlock,
     PlacedElement,
 )
 from symflex.model.network import (
+    AsWritten,
     Draft,
     DraftElement,
     DraftInput,
     broken_names,
     domain_of,
-    infer_nodes,
     read_elements,
     read_inputs,
 )
+from symflex.model.passes import Specified, rewritten
 from symflex.model.reading import QuantityLiteral, Reader
-from symflex.model.scope import COORDINATE, ModelScope, build_scope
+from symflex.model.scope import ModelScope, build_scope
 from symflex.model.settings import Setting, check_names, settled
 from symflex.model.signs import Line, check_ranges, ranged_values
-from symflex.model.spec import Spec, TableValue, parse_with_recovery
+from symflex.model.spec import Spec, parse_with_recovery
 from symflex.model.units import (
-    AsWritten,
     block_unit,
     check_units,
-    constant_measure,
-    declared_quantities,
     implied_units,
     lower,
     measured_input,
@@ -88,7 +82,6 @@ from symflex.model.units import (
     quotients,
 )
 from symflex.model.unused import unused
-from symflex.model.written_delays import with_written_delays
 
 Kind = Literal["constant", "real", "varying", "signal"]
 """What an expression may be: constant, that and real, varying along x, or varying in time."""
@@ -155,26 +148,14 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     taken |= {d.name for d in definitions} | {b.name for b in blocks}
     signals += read_state_equations(reader, sections["blocks"], taken, {x.name for x in signals})
     signals += read_equations(reader, sections["equations"], taken, {x.name for x in signals})
-    draft = Draft(declared, inherited, definitions, (), elements, inputs, blocks, signals, outputs, ())
-    draft, cycles = _with_turns_read(reader, draft)
-    draft, point = _with_motion(reader, sections, draft, taken, cycles, origin.loads.settings)
-    taken |= {p.name for p in draft.declared} | {d.name for d in draft.definitions}
-    loads = {x.name for x in draft.signals} | {d.input.name for d in inputs}
-    fields = with_brackets_opened(
-        reader,
-        tuple(f.rewritten(cycles.read) for f in read_fields(reader, sections["fields"], taken)),
-        has_coordinate=COORDINATE not in taken | loads,
+    draft = Draft(
+        declared, inherited, definitions, (), elements, inputs, blocks, signals, outputs, AsWritten()
     )
-    measure = constant_measure(draft.declared, inherited, draft.definitions)
-    attached = [a for element in draft.elements for a in element.attachments(measure)]
-    nodes, contradictions = infer_nodes([*attached, *(a for i in inputs for a in i.attachments())])
-    reader.take(contradictions)
-    draft = replace(draft, nodes=nodes, fields=fields)
-    named = taken | loads | {n.name for n in nodes}
-    draft = with_imaginary_unit(reader, with_written_delays(with_branches(draft, named), named))
+    draft = rewritten(Specified(reader, sections, origin.loads.settings), draft)
     broken = broken_names(sections, draft) | twins
-    model = _finish(reader, draft, broken, cycles)
-    later, hints, solved_with = Reader(), Reader(), point.solved_with if point else ()
+    model = _finish(reader, draft, broken)
+    later, hints, point, cycles = Reader(), Reader(), draft.point, draft.cycles
+    solved_with = point.solved_with if point else ()
     model = replace(
         model,
         outputs=_in_radians(model, () if point is None else point.coordinates),
@@ -239,36 +220,6 @@ def _conversions(
     for block in model.blocks:
         found = {p.name: p for p in (block.submodel.conversions if block.submodel else ())} | found
     return tuple(found.values())
-
-
-def _with_turns_read(reader: Reader, draft: Draft) -> tuple[Draft, AsWritten]:
-    """Return a draft in which every frequency stands as it is meant, and what reads further expressions."""
-    quantities = declared_quantities(draft.declared, draft.inherited)
-    literals = (d.expression for d in draft.definitions)
-    written = [*quantities.values(), *(e.quantity for e in literals if isinstance(e, QuantityLiteral))]
-    # A pitch that a block brings may be in radians by now; a formula may still divide it by 2 pi.
-    written += [one_of(p.written_unit) for p in draft.inherited if p.written_unit]
-    if not any(q is not None and q.cycles for q in written):
-        return draft, AsWritten()
-    from symflex.model.cycles import converted  # few models need it
-
-    return converted(reader, draft, quantities)
-
-
-def _with_motion(
-    reader: Reader,
-    sections: Mapping[str, TableValue | None],
-    draft: Draft,
-    taken: Collection[str],
-    cycles: AsWritten,
-    settings: Mapping[str, Setting],
-) -> tuple[Draft, OperatingPoint | None]:
-    """Return a draft whose equations of motion are linear, and the point at which they are."""
-    if not any(sections[name] for name in ("equations", "operating_point", "energy")):
-        return draft, None
-    from symflex.model.energy import with_motion  # four modules that few models need
-
-    return with_motion(reader, sections, draft, taken, cycles, settings)
 
 
 def _check_count(reader: Reader, spec: Spec, outputs: Sequence[Output], inputs: Sequence[DraftInput]) -> None:
@@ -354,7 +305,7 @@ def _inherited_parameters(
     return tuple(inherited.values())
 
 
-def _finish(reader: Reader, draft: Draft, broken: frozenset[str], cycles: AsWritten) -> Model:
+def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> Model:
     """Check names, linearity and units, and return the model."""
     nodes = {n.name: n for n in draft.nodes}
     placed = tuple(_place(d, nodes) for d in draft.elements)
@@ -385,7 +336,7 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str], cycles: AsWrit
     acting = [e for e, kind in _all_expressions(replace(draft, signals=(), outputs=())) if kind == "signal"]
     equations = [e for f in draft.fields for e in (*f.equations, *f.conditions)]
     check_unknowns(reader, draft.signals, [*acting, *equations])
-    parameters = [p.resolve(is_converted=p.name in cycles.eager) for p in draft.declared]
+    parameters = [p.resolve(is_converted=p.name in draft.cycles.eager) for p in draft.declared]
     around = _surroundings(draft, scope, (*parameters, *draft.inherited))
     for ranged in ranged_values(draft):
         if ranged.is_extent and depends_on_s(ranged.expression, around.varying):
@@ -407,7 +358,7 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str], cycles: AsWrit
         check_points(reader, expression, along, around)
     implied = implied_units(placed, draft.blocks)
     parameters = [
-        p.resolve(implied.get(p.name, ""), is_converted=p.name in cycles.eager) for p in draft.declared
+        p.resolve(implied.get(p.name, ""), is_converted=p.name in draft.cycles.eager) for p in draft.declared
     ]
     units = {v: d for v in measured_variables(draft) if (d := system.dimension(system.variable(v)))}
     return Model(

@@ -22,7 +22,6 @@ from symflex.model.model import (
     ModelParameter,
     PlacedBlock,
     PlacedElement,
-    Published,
 )
 from symflex.model.reading import QuantityLiteral, Reader, signed_number
 from symflex.model.scope import ModelScope, build_scope
@@ -30,21 +29,6 @@ from symflex.quantities import DIMENSIONLESS, Dimension, Quantity, unit_of
 
 if TYPE_CHECKING:
     from symflex.model.network import Draft
-
-
-class AsWritten:
-    """Reads expressions in which nothing counts cycles; :class:`symflex.model.cycles.Cycles` reads others."""
-
-    eager: Collection[str] = ()  # what is declared in cycles, and by its name in radians
-    converted: Collection[str] = ()  # what became radians somewhere
-
-    def read(self, expression: Expression, *, is_delay: bool = False) -> Expression:
-        """Return an expression, or an equation, as it is meant."""
-        return expression
-
-    def printed(self, published: Published) -> Published:
-        """Return a printed formula as it is meant."""
-        return published
 
 
 def counts_cycles(quantity: Quantity) -> bool:
