@@ -25,7 +25,17 @@ from symflex.algebra import Ring, by_powers, degree_in, irreducible_factors, sum
 from symflex.balls import precision
 from symflex.equations.elimination.determinants import Minors
 from symflex.errors import REPORT, Diagnostic, InternalError, ModelError, Text, UsageError
-from symflex.expressions import PROGRAM_LIMITS, Expression, format_expression, number, parse
+from symflex.expressions import (
+    PROGRAM_LIMITS,
+    Call,
+    Expression,
+    Name,
+    Negative,
+    format_expression,
+    nodes,
+    number,
+    parse,
+)
 from symflex.library.elements import CIRCUITS
 from symflex.loops.over import seen_pair
 from symflex.model import Model
@@ -91,7 +101,16 @@ class Conditions:
     def __str__(self) -> str:
         loose = ", ".join(p.name for p in self.model.parameters if p.assume != "positive")
         values = f"for positive values of all letters{f' but {loose}' if loose else ''}"
-        return "\n    ".join(["\n".join(broken(self.sentence)), *map(str, self.conditions), values])
+        rest = (f"where {root} is real" for root in self.roots_at_rest)
+        return "\n    ".join(["\n".join(broken(self.sentence)), *map(str, self.conditions), values, *rest])
+
+    @property
+    def roots_at_rest(self) -> list[str]:
+        """Square roots that were solved for at rest, and that parameters may make imaginary."""
+        deciding = {Name(p.name) for p in self.model.parameters if p.is_solved_with}
+        values = ((d.name, d.expression) for d in self.model.definitions if deciding & {*nodes(d.expression)})
+        roots = ((n, e.operand if isinstance(e, Negative) else e) for n, e in values)
+        return [f"{n} = {format_expression(e)}" for n, e in roots if isinstance(e, Call) and e.name == "sqrt"]
 
     def latex(self) -> str:
         """Return the conditions as a display, the sentence above them as a comment."""
@@ -103,6 +122,7 @@ class Conditions:
         """Return the conditions in the schema ``symflex.stability/1``."""
         shown = [{"condition": str(c) if c.sides else None, "terms": c.terms} for c in self.conditions]
         own = {"of": self.of, "never": self.is_never, "on_axis": [*map(list, self.on_axis)]}
+        own |= {"real": roots} if (roots := self.roots_at_rest) else {}
         return {"schema": "symflex.stability/1", **own, "conditions": shown}
 
 

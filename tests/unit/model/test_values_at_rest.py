@@ -12,6 +12,7 @@ import pytest
 from symflex import loads as load
 from symflex.cli import run
 from symflex.errors import ModelError, SpecError
+from symflex.letters.routh import conditions
 from symflex.pipeline import loads
 
 ACTUATOR = {  # k x = eps A V^2/(2 (d - x)^2), in three spellings
@@ -203,6 +204,8 @@ def test_a_square_that_is_solved_for_is_not_followed_to_where_it_is_negative():
     assert load(text).stability(over="x_0").certified
     with pytest.raises(SpecError, match="has no value at the operating point"):
         loads(text.replace("F_0 = 0.2", "F_0 = 0.6"))
+    # In letters the poles are on the axis for F > m g, where i_0 is imaginary: the condition says that.
+    assert str(conditions(loads(text))).endswith("where i_0 = sqrt(-(-m*g + F_0)*x_0^2/C) is real")
 
 
 def test_formulas_have_what_a_function_is_at_rest_in_its_place():
