@@ -199,8 +199,9 @@ def with_motion(
         elif all(d.name != p.name for d in found):
             declared.append(p)
     definitions = in_order(reader, [*draft.definitions, *found])
-    outputs = tuple(replace(o, expression=in_s(o.expression, loads)) for o in draft.outputs)
-    signals = tuple(replace(x, expression=in_s(x.expression, loads)) for x in signals)
+    moving = loads | nodes
+    outputs = tuple(replace(o, expression=in_s(o.expression, moving)) for o in draft.outputs)
+    signals = tuple(replace(x, expression=in_s(x.expression, moving)) for x in signals)
     draft = replace(
         draft, declared=tuple(declared), definitions=definitions, signals=signals, outputs=outputs
     )

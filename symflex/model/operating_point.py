@@ -168,17 +168,21 @@ def linearised(
     for x in signals:
         if x.name not in equations and all(_base(n) in moving for n in point.leaves(x.expression)):
             point.take_signal(x)
-    for name, value in point.signals.items():
-        if name in point.values:  # given, and to be right
-            left = point.at_rest(sum_of([Name(name), negative(value)]))
-            point.left_over.append(Left(left, Equation(Name(name), value, span=point.values[name].span)))
+    given = [
+        Equation(Name(name), value, span=point.values[name].span)
+        for name, value in point.signals.items()
+        if name in point.values
+    ]
     parts = (*equations.values(), *point.signals.values())
     products = [n for e in parts for n in nodes(e) if isinstance(n, Product)]
     after_s = {id(f) for n in products if any(map(_order_of_s, n.factors)) for f in n.factors}
     leaves = [n for e in parts for n in nodes(e) if point.varies(n) and id(n) not in after_s]
     point.bare = {n for n in leaves if isinstance(n, Name)}
-    for equation in equations.values():
+    for equation in (*equations.values(), *given):
         point.infer_rates(equation)
+    for each in given:  # and to be right
+        left = point.at_rest(sum_of([each.left, negative(each.right)]))
+        point.left_over.append(Left(left, each))
     made = {name: point.linear(equation) for name, equation in equations.items()}
     if None not in made.values():
         point.check_names(rest)
@@ -363,7 +367,8 @@ class _AboutRest:
         """Tell whether the value of an expression at rest follows from that of a leaf."""
         new = {*self.leaves(expression)} - passed
         passed |= new
-        known = [self.signals[n] for each in new if (n := format_expression(each)) in self.signals]
+        free = {format_expression(each) for each in new} - self.values.keys()
+        known = [self.signals[n] for n in free if n in self.signals]
         return leaf in new or any(self._leads_to(leaf, each, passed) for each in known)
 
     def take_signal(self, signal: Signal) -> None:

@@ -429,6 +429,7 @@ SPEEDS = {  # equations of the speed, signals, values at rest
     "a signal of a signal": (["J_p*q'' = T"], {"omega": "2*p", "p": "q'/2"}, {"q'": "n"}),
     "a rate that follows": (["q' = w", "J_p*w' = T"], {"omega": "q'"}, {"w": "n"}),
     "a rate that follows from a rate": (["p' = q'", "q' = w", "J_p*w' = T"], {"omega": "p'"}, {"w": "n"}),
+    "a signal whose value is given": (["J_p*q'' = T"], {"omega": "s*q"}, {"omega": "n"}),
     "a rate on the right": (["w = q'", "J_p*w' = T"], {"omega": "q'"}, {"w": "n"}),
 }
 
@@ -498,3 +499,25 @@ def test_what_depends_on_an_angle_that_turns_is_refused(equation):
         Model, parameters={"J": 1, "k": 2, "n": 3}, inputs={"T": {}}, outputs={"Q": "q"}, **parts
     )
     assert refused == "SpecError SF407"
+
+
+@pytest.mark.parametrize("speed", ["s*b", "b'"])
+@pytest.mark.parametrize("given", ["w", "b'"])
+def test_a_fan_brakes_a_shaft_of_elements_that_turns(speed, given):
+    model = Model(
+        parameters={"J_m": 0.01, "J_f": 0.2, "k": 300, "c": 2e-4, "n": 150},
+        elements={
+            "motor": {"type": "inertia", "at": "a", "J": "J_m"},
+            "coupling": {"type": "torsion_spring", "between": ["a", "b"], "k": "k"},
+            "fan": {"type": "inertia", "at": "b", "J": "J_f"},
+            "drag": {"type": "torque_source", "at": "b", "tau": "-T_f"},
+        },
+        signals={"w": speed},
+        equations={"unknowns": ["T_f"], "equations": ["T_f = c*w^2"]},
+        operating_point={given: "n", "T_f": "c*n^2"},
+        inputs={"T": {"torque": "a"}},
+        outputs={"W": "b'"},
+    )
+    s = 2 + 7j
+    expected = s * 300 / ((0.01 * s**2 + 300) * (0.2 * s**2 + 2 * 2e-4 * 150 * s + 300) - 300**2)
+    assert model.transfer_function("W/T").bind()(s) == pytest.approx(expected, rel=1e-12)
