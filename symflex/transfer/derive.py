@@ -327,14 +327,12 @@ def _lowest(value: Factored) -> Factored:
 
 
 def nested_transfer(block: PlacedBlock, ring: Ring) -> tuple[Factored, Factored]:
-    """Return a ``model`` block's function and what cancelled but powers of s; SF910 if distributed."""
+    """Return a ``model`` block's function and what cancelled but powers of s; SF910 if either has waves."""
     if block.submodel is None or block.tf is None:
         raise ValueError(f"block '{block.name}' contains no model")
     tf = derive(assemble(block.submodel, nested_transfer), *block.tf)
-    if not tf.is_rational or tf.model.root:
-        message = (
-            f"block '{block.name}' stands for a distributed system or a root of s, which no block can be"
-        )
+    if not tf.whole.is_rational or tf.model.root:
+        message = f"block '{block.name}' contains waves, a delay or a root of s, which no block can hold"
         hint = "write its elements and fields into this file"
         raise ModelError(Diagnostic("SF910", message, block.span, hint))
     inner = tf.ratio

@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 
 from symflex import pipeline
-from symflex.errors import SpecError
+from symflex.errors import ModelError, SpecError
 
 HEADER = "symflex = 1\n"
 MOVING = '[inputs]\nF = { force = "x" }\n[outputs]\nX = "x"\n'
@@ -169,6 +169,15 @@ def test_two_blocks_with_one_parameter_of_two_values_are_both_named(tmp_path):
     (tmp_path / "parts" / "other.toml").write_text(INNER.replace('m = "3 kg"', 'm = "4 kg"'), "utf-8")
     with pytest.raises(SpecError, match=r"in block 'H' \(.*other\.toml:.* than in block 'G' \(.*inner\.toml"):
         pipeline.load(path)
+
+
+def test_a_model_that_hides_a_late_part_is_refused_as_a_block(tmp_path):
+    path = nested(tmp_path, OUTER.format(parameters=""))
+    late = HEADER + 'inputs.F = {}\noutputs.X = "(2 - exp(-s))*y"\nsignals.y = "F/((2 - exp(-s))*(s + 1))"\n'
+    (tmp_path / "parts" / "inner.toml").write_text(late, "utf-8")
+    with pytest.raises(ModelError, match="contains waves, a delay or a root of s") as caught:
+        pipeline.derive_all(pipeline.load(path))
+    assert caught.value.diagnostics[0].code == "SF910"
 
 
 def test_a_model_that_nests_itself_is_refused(tmp_path):
