@@ -436,17 +436,7 @@ class _Assembly:
         one = Factored.number(self.ring, 1)
         delays = {} if self.distributed is None else self.distributed.delays
         read = {name: Dynamics(delay, one) for name, delay in delays.items()}
-        definitions = {d.name: d.expression for d in self.model.definitions}
-        evaluator = ExactEvaluator(
-            self.ring,
-            scope_of(self.model),
-            read,
-            {},
-            definitions,
-            radicals=self._radicals,
-            root=self.model.root,
-            varying=self._varying,
-        )
+        evaluator, _ = self._evaluator(read)
         blocks = {b.name: b for b in self.model.blocks}
         delayed = self._delayed if self.distributed is None else ()
         for name, expressions in self._constants_in_order.items():

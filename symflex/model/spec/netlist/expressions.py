@@ -13,9 +13,10 @@ for all values of their letters. Source: ngspice 39, User's Manual, section 2.8.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Container, Sequence
+from collections.abc import Container, Sequence
 from decimal import Decimal
 from fractions import Fraction
+from functools import reduce
 from typing import Final, Protocol
 
 from symflex.errors import SpecError
@@ -25,9 +26,7 @@ from symflex.expressions import (
     Name,
     Negative,
     Number,
-    Product,
-    Quotient,
-    Sum,
+    fold,
     names_among,
     number,
     power,
@@ -35,7 +34,8 @@ from symflex.expressions import (
     quotient,
     sum_of,
 )
-from symflex.expressions.nodes import negative
+from symflex.expressions.derivative import derivative
+from symflex.expressions.nodes import negative, nodes
 from symflex.model.spec.netlist.cards import QUOTED, Card
 
 SUFFIXES: Final = {
@@ -103,6 +103,11 @@ def _checked(card: Card, digits: str, suffix: str) -> tuple[str, str]:
     if exponent and suffix:
         digits, suffix = str(Decimal(digits) * Decimal(f"1{suffix}")), ""
     return digits, suffix
+
+
+def exactly(digits: str, suffix: str) -> Fraction:
+    """Return the number of digits and a power of ten."""
+    return Fraction(digits) * Fraction(f"1{suffix}")
 
 
 def exact(value: Expression) -> Fraction | None:
@@ -243,7 +248,7 @@ class _Parser:
             if re.search(r"\dmil", text, re.I):
                 raise self.refuse(f"{DIFFERS}, a mil as 25.4u or as 1m", "write 25.4u")
             digits, suffix = number_of(self.card, text) or ("", "")
-            return number(Fraction(digits) * Fraction(f"1{suffix}"))
+            return number(exactly(digits, suffix))
         if kind := piece["signal"]:
             places = [w for w in re.split(r"[\s,]+", piece["places"].strip()) if w]
             return self.names.signal(kind.lower(), places)
@@ -304,31 +309,25 @@ def slopes(expression: Expression, signals: Container[str]) -> dict[str, Express
 
     What does not vary is left out, because a constant does not act on small signals.
     """
-    if not names_among(expression, signals):
-        return {}
-    match expression:
-        case Name(name):
-            return {name: number(1)}
-        case Negative(operand):
-            return _scaled(slopes(operand, signals), negative)
-        case Sum(terms):
-            total: dict[str, Expression] = {}
-            for part in (slopes(t, signals) for t in terms):
-                if part is None:
-                    return None
-                total |= {n: added(total.get(n, number(0)), e) for n, e in part.items()}
-            return total
-        case Product(factors):
-            varying = [f for f in factors if names_among(f, signals)]
-            if len(varying) == 1:
-                others = [f for f in factors if f is not varying[0]]
-                return _scaled(slopes(varying[0], signals), lambda e: product_of([*others, e]))
-        case Quotient(above, below) if not names_among(below, signals):
-            return _scaled(slopes(above, signals), lambda e: divided(e, below))
-    return None
-
-
-def _scaled(
-    part: dict[str, Expression] | None, scale: Callable[[Expression], Expression]
-) -> dict[str, Expression] | None:
-    return None if part is None else {n: scale(e) for n, e in part.items()}
+    if any(isinstance(n, Call) and names_among(n, signals) for n in nodes(expression)):
+        return None
+    found: dict[str, Expression] = {}
+    for name in dict.fromkeys(names_among(expression, signals)):
+        try:
+            slope = derivative(expression, Name(name))
+        except ValueError:  # of a broken or varying power
+            return None
+        if names_among(slope, signals):
+            return None
+        found[name] = fold(
+            slope,
+            number=number,
+            name=Name,
+            power=power,
+            call=lambda call, argument: Call(call.name, argument),
+            negative=negative,
+            total=lambda terms: reduce(added, terms),
+            product=product_of,
+            quotient=divided,
+        )
+    return found

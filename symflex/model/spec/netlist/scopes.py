@@ -93,9 +93,7 @@ class Scope:
         except CycleError as error:
             first = self.parameters[error.args[1][0]]
             message = f"the parameter '{first.name[:40]}' depends on itself"
-            raise first.card.refuse(
-                message, "give it another name, or one of those that it depends on"
-            ) from None
+            raise first.card.refuse(message, RENAME) from None
         places = {name: n for n, name in enumerate(self.parameters)}
         rank = 0
         while order.is_active():

@@ -108,22 +108,13 @@ def _slopes(line: PlacedCard, words: Sequence[str], count: int) -> list[str]:
     return list(words[1 : 1 + count])
 
 
-@dataclass
-class _Readings:
+@dataclass(frozen=True)
+class _Readings(Lookup):
     """Voltages and currents that an expression reads, by the names that stand for them in it."""
 
-    line: PlacedCard
+    line: PlacedCard = field(kw_only=True)
     kinds: dict[str, str] = field(default_factory=dict)
-    found: dict[str, Expression] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        self.meaning = Lookup(self.line.build.values, self.line.card, self.line.scope)
-
-    def parameter(self, name: str) -> Expression:
-        return self.meaning.parameter(name)
-
-    def call(self, name: str, arguments: Sequence[Expression]) -> Expression | None:
-        return self.meaning.call(name, arguments)
+    signals: dict[str, Expression] = field(default_factory=dict)
 
     def signal(self, kind: str, places: Sequence[str]) -> Expression:
         if kind == "v" and len(places) in (1, 2):
@@ -133,7 +124,7 @@ class _Readings:
         else:
             raise self.line.card.refuse(f"'{kind}({','.join(places)[:40]})' is not a voltage or a current")
         name = f"#{format_expression(read)}"  # the same one for the same signal
-        self.kinds[name], self.found[name] = kind, read
+        self.kinds[name], self.signals[name] = kind, read
         return Name(name)
 
 
@@ -141,16 +132,16 @@ def _linear(line: PlacedCard, name: str, ends: Sequence[str], text: str, *, is_v
     """Add a source of a linear function of voltages and currents, once all of these are known."""
 
     def finish() -> None:
-        readings = _Readings(line)
+        readings = _Readings(line.build.values, line.card, line.scope, line=line)
         value = expression_of(line.card, text, readings)
-        gains = slopes(value, readings.found)
+        gains = slopes(value, readings.signals)
         if gains is None:
             raise line.card.refuse(f"'{line.word}' has a function that is not linear", SLOPE)
         terms = []
         for number, (signal, gain) in enumerate(gains.items(), 1):
             own = name if len(gains) == 1 else f"{name}_{number}"
             unit = {("v", False): "A/V", ("i", True): "Ohm"}.get((readings.kinds[signal], is_voltage), "")
-            terms.append(product_of([line.named(own, gain, None, unit), readings.found[signal]]))
+            terms.append(product_of([line.named(own, gain, None, unit), readings.signals[signal]]))
         line.source(name, ends, format_expression(sum_of(terms)), is_voltage=is_voltage)
 
     line.build.later.append(finish)

@@ -17,7 +17,7 @@ from symflex.expressions import Attribute, Expression, Name, names, number, prod
 from symflex.expressions.nodes import negative
 from symflex.model.spec.netlist.cards import Card, Deck
 from symflex.model.spec.netlist.circuit import Circuit, texts
-from symflex.model.spec.netlist.expressions import number_of
+from symflex.model.spec.netlist.expressions import exactly, number_of
 from symflex.model.spec.netlist.scopes import NOMINAL, Lookup, Scope, Values
 
 HARMLESS: Final = frozenset(
@@ -151,11 +151,10 @@ class PlacedCard:
 
     def number(self, text: str) -> Expression:
         """Return a value without a unit: a number, or an expression of parameters."""
-        is_quoted = text[:1] in "{'\""
-        written = None if is_quoted else number_of(self.card, text)
+        written = number_of(self.card, text)
         if written is not None:
             return number(exactly(*written))
-        if is_quoted or re.fullmatch(r"[A-Za-z_]\w*", text, re.A):
+        if text[:1] in "{'\"" or re.fullmatch(r"[A-Za-z_]\w*", text, re.A):
             return self.build.values.expression(self.card, text, self.scope)
         hint = "write a number with a suffix, 4.7k or 10meg, or an expression in braces, {2*R}"
         raise self.card.refuse(f"'{text[:60]}' is not a value", hint)
@@ -168,7 +167,7 @@ class PlacedCard:
             value: Expression = circuit.symbol(circuit.value_name(name), unit)
             return value if factor is None else product_of([value, factor])
         value = self.number(text)
-        written = None if text[:1] in "{'\"" else number_of(self.card, text)
+        written = number_of(self.card, text)
         if factor is not None:
             value, written = product_of([value, factor]), None
         return self.named(name, value, written, unit)
@@ -180,7 +179,7 @@ class PlacedCard:
 
     def size(self, text: str) -> Fraction | None:
         """Return the number that a word is."""
-        found = None if text[:1] in "{'\"" else number_of(self.card, text)
+        found = number_of(self.card, text)
         return None if found is None else exactly(*found)
 
     def check(
@@ -210,11 +209,6 @@ class PlacedCard:
         """Tell the current of a source, whose .i is delivered: a voltage delivers it at its first node."""
         own = Attribute(name, "i")
         self.carries(negative(own) if is_voltage else own)
-
-
-def exactly(digits: str, suffix: str) -> Fraction:
-    """Return the number of digits and a power of ten."""
-    return Fraction(digits) * Fraction(f"1{suffix}")
 
 
 def difference(nodes: Sequence[str]) -> Expression:
