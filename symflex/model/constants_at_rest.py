@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from flint import arb, arb_mat
 
-from symflex.balls import precision
+from symflex.balls import ball, precision
 from symflex.expressions import (
     Call,
     Expression,
@@ -100,7 +100,7 @@ class Constants:
 
         return fold(
             expression,
-            number=lambda n: arb(n.numerator) / n.denominator,
+            number=ball,
             name=lambda name: arb.pi() if name == "pi" else named(name),
             power=lambda base, exponent: base ** self.value(exponent, known, random),
             call=called,

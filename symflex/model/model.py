@@ -12,7 +12,7 @@ from typing import Any, Final, Literal, TypeVar
 
 from flint import arb
 
-from symflex.balls import precision
+from symflex.balls import ball, precision
 from symflex.errors import Diagnostic, Span, Text
 from symflex.expressions import Attribute, Equation, Expression, Number, names, parse
 from symflex.library.blocks import ROOT
@@ -232,7 +232,7 @@ class FoundValue:
     def ball(self) -> arb:
         """The value as a ball."""
         with precision(FOUND_BITS):
-            return arb(self.value.numerator) / self.value.denominator + arb(0, float(self.radius))
+            return ball(self.value) + arb(0, float(self.radius))
 
     @property
     def declared_text(self) -> str | None:

@@ -14,10 +14,10 @@ from functools import cached_property, reduce
 from math import prod
 from typing import TYPE_CHECKING, cast
 
-from flint import arb, arb_series, fmpq
+from flint import arb, arb_series
 
 from symflex.algebra import FUNCTIONS, LAPLACE
-from symflex.balls import UndecidedError, covered
+from symflex.balls import UndecidedError, ball, covered
 from symflex.errors import Diagnostic, Span, UsageError
 from symflex.expressions import (
     Call,
@@ -72,7 +72,7 @@ class Line:
     @cached_property
     def enclosures(self) -> Mapping[str, arb]:
         """The values of parameters and definitions, of those that have one."""
-        enclosed = {"pi": arb.pi(), **{name: _ball(value) for name, value in self.values.items()}}
+        enclosed = {"pi": arb.pi(), **{name: ball(value) for name, value in self.values.items()}}
         for name, expression in self.definitions.items():
             if (value := _enclosed(expression, enclosed)) is not None:
                 enclosed[name] = value
@@ -283,7 +283,7 @@ class RangedValue:
             return ""
         for k in range(1, PIECES):
             place = whole * k / PIECES
-            value = value_along(self.expression, _ball(place), line)
+            value = value_along(self.expression, ball(place), line)
             if value is None or not value.is_finite():
                 return ""
             if value < 0 or (self.sign == "positive" and value == 0):
@@ -364,10 +364,6 @@ PIECES = 64  # number of pieces of a member: a value that varies along x is trie
 SHORTEST = 2.0**-10  # piece of an interval beyond which no sign is looked for
 
 
-def _ball(number: Fraction) -> arb:
-    return arb(fmpq(number.numerator, number.denominator))
-
-
 def value_along(value: Expression, x: arb, line: Line) -> arb | None:
     """Return what varies along x on a ball of x, None if a parameter has no value."""
     enclosures = {**line.enclosures, COORDINATE: x}
@@ -382,7 +378,7 @@ def _enclosed(expression: Expression, values: Mapping[str, arb]) -> arb | None:
     try:
         enclosure: arb = fold(
             lower(expression),
-            number=_ball,
+            number=ball,
             name=values.__getitem__,
             power=lambda base, exponent: base ** (integer_exponent(exponent) or 0),
             call=lambda call, argument: FUNCTIONS[call.name].evaluate(argument),
@@ -418,7 +414,7 @@ def _sign_along(value: Expression, length: Expression, line: Line) -> int | None
     places = Number(Fraction(0)), lower(length)
     first, last = (line.value(substitute(value, {COORDINATE: place})) == 0 for place in places)
     return sign_between(
-        (arb(0), _ball(line.value(length) or Fraction(0))),
+        (arb(0), ball(line.value(length) or Fraction(0))),
         lambda x: value_along(value, x, line),
         lambda x: _slope_along(value, x, line),
         (first, last),

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 
 from flint import arb
 
-from symflex.balls import precision
+from symflex.balls import ball, precision
 from symflex.balls.solutions import DIGITS, EquationSystem
 from symflex.expressions import (
     Call,
@@ -193,7 +193,7 @@ class Solving:
             scale, unit = unit_of_value(self.constants.declared.get(name))
             whole, declared = value / scale, None if start is None else start / scale
             middle = Fraction(0 if whole.contains(0) else whole.mid().str(DIGITS, radius=False))
-            radius = abs(whole - arb(middle.numerator) / middle.denominator).upper()
+            radius = abs(whole - ball(middle)).upper()
             return FoundValue(
                 name,
                 middle,
@@ -314,8 +314,7 @@ def unit_of_value(parameter: ModelParameter | None) -> tuple[arb, str]:
     if parameter is None or not parameter.written_unit:
         return arb(1), ""
     scale = parameter.scale
-    size = arb(scale.rational.numerator) / scale.rational.denominator * arb.pi() ** scale.pi_power
-    return size, parameter.written_unit
+    return ball(scale.rational) * arb.pi() ** scale.pi_power, parameter.written_unit
 
 
 class _Search:
@@ -327,15 +326,14 @@ class _Search:
         residuals: Sequence[Expression],
         unknowns: Sequence[str],
         start: Sequence[arb] | None,  # the declared values, None without them
-        signed: Collection[str] | None = None,  # which may be negative
+        signed: Collection[str],  # which may be negative
     ) -> None:
         self.unknowns, self.start = unknowns, start
         self.others: list[list[arb]] = []  # the nearest first
         self.doubtful: list[arb] | None = None  # what declared values lead to, but others are nearer
         self.negative: list[arb] | None = None  # what they lead to, but parameters are assumed positive
         self.is_evaluated = True  # all other parameters have values
-        own = constants.signed if signed is None else signed
-        self._may_be_negative = [p in own or start is None for p in unknowns]
+        self._may_be_negative = [p in signed or start is None for p in unknowns]
         slopes = [derivative(r, Name(p)) for r in residuals for p in unknowns]
 
         def enclosed(expressions: Sequence[Expression], box: Sequence[arb]) -> list[arb]:

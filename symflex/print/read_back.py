@@ -20,10 +20,10 @@ from functools import cached_property
 from itertools import islice
 from typing import TYPE_CHECKING, Final, TypeVar
 
-from flint import acb, arb, fmpq
+from flint import acb, arb
 
 from symflex.algebra import LAPLACE, Dispersion, Factored, Kernel
-from symflex.balls import Value, at_centre, precision
+from symflex.balls import Value, at_centre, ball, precision
 from symflex.budget import spend
 from symflex.errors import REPORT, Diagnostic, InternalError, SpecError, Text
 from symflex.expressions import (
@@ -247,13 +247,13 @@ class _Points:
 
     def _number(self, value: Fraction) -> arb:
         """Return a number, a decimal with what rounding took away."""
-        middle = arb(fmpq(value.numerator, value.denominator))
+        middle = ball(value)
         digits = self._reader.digits
         return middle if digits is None else arb(middle, abs(middle) * arb(10) ** (1 - digits) / 2)
 
     def _call(self, call: Call, argument: list[acb]) -> list[acb]:
         if isinstance(call, Bessel):
-            order = acb(fmpq(call.index.numerator, call.index.denominator))
+            order = acb(ball(call.index))
             return [getattr(x, f"bessel_{call.kind.lower()}")(order) for x in argument]
         if call.name in self._reader.laws:
             key = call.name, call.argument

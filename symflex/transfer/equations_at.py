@@ -20,12 +20,12 @@ from dataclasses import dataclass, field
 from functools import cached_property, partial
 from math import prod
 
-from flint import acb, acb_mat, acb_series, arb, fmpq
+from flint import acb, acb_mat, acb_series, arb
 
 from symflex.algebra import LAPLACE, Dispersion, Factored, composed, evaluated, terms_of
 from symflex.algebra.propagators import EXPONENTIAL
 from symflex.along.law import BoundLaw
-from symflex.balls import Arithmetic, Value, at_centre, current_bits, eliminate, raised
+from symflex.balls import Arithmetic, Value, at_centre, ball, current_bits, eliminate, raised
 from symflex.equations import Equations
 from symflex.expressions import Call, names_among
 from symflex.library.elements import LinearForm
@@ -174,7 +174,7 @@ class EquationsAt:
         return plans[id(value)][1]
 
     def _planned(self, value: Factored, names: Collection[str]) -> Plan:
-        constant, powers, sums = acb(fmpq(value.unit.numerator, value.unit.denominator)), [], []
+        constant, powers, sums = acb(ball(value.unit)), [], []
         for factor, exponent in value.factors:
             by_moving: dict[tuple[tuple[str, int], ...], acb] = {}
             for monomial, coefficient in terms_of(factor):

@@ -14,7 +14,7 @@ from typing import Self, TypeVar
 from flint import acb, acb_mat, arb, arb_mat
 
 from symflex.along.law import BoundLaw
-from symflex.balls import current_bits, precision
+from symflex.balls import ball, current_bits, precision
 from symflex.errors import nearest, refused
 from symflex.library.elements import Variable
 from symflex.roots import Root
@@ -118,7 +118,7 @@ class DistributedShape:
     def at(self, x: Fraction) -> tuple[acb, ...]:
         """Return the state at a place x [m], enclosed."""
         with precision(self.bits):
-            distance = arb(x.numerator) / x.denominator - self.start
+            distance = ball(x) - self.start
             return self._carried(self._step(arb(0), distance), self.initial)
 
     def state_at_share(self, share: Fraction) -> tuple[acb, ...]:

@@ -30,9 +30,9 @@ from fractions import Fraction
 from functools import cache
 from math import inf, log2, prod, sqrt, tau
 
-from flint import acb, arb, fmpq
+from flint import acb, arb
 
-from symflex.balls import precision, precisions
+from symflex.balls import ball, precision, precisions
 from symflex.budget import spend
 from symflex.codegen.program.forge import Forge, schedule
 from symflex.codegen.program.nodes import Laplace, Piecewise, RootFactor, Within
@@ -121,7 +121,7 @@ class SplitRoot(RootFactor):
     def factor(self, s: acb) -> acb:
         """Return the value over the scale."""
         sign = -1 if not self.is_pair and (self.is_mirrored or self.re[0] < 0) else 1
-        value = acb(sign) / arb(fmpq(self.scale.numerator, self.scale.denominator))
+        value = acb(sign) / ball(self.scale)
         for z in self.every:
             value = value * (z - s)
         return value

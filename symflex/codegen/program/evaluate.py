@@ -15,11 +15,11 @@ from sys import float_info
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from flint import arb, fmpq
+from flint import arb
 
 from symflex.algebra.line_networks import network_value
 from symflex.along.doubles import fundamental_minors
-from symflex.balls import precision
+from symflex.balls import ball, precision
 from symflex.codegen.program import nodes as tree
 from symflex.errors import Diagnostic, ModelError
 
@@ -43,7 +43,7 @@ def nearest_double(value: Fraction, pi_power: int = 0) -> float:
             result = float(value)
         else:
             with precision(CONSTANT_BITS):
-                result = float((arb(fmpq(value.numerator, value.denominator)) * arb.pi() ** pi_power).mid())
+                result = float((ball(value) * arb.pi() ** pi_power).mid())
     except OverflowError:
         result = float("inf")
     if not isfinite(result) or abs(result) < float_info.min:

@@ -17,8 +17,9 @@ from math import prod
 from random import Random
 from typing import Final
 
-from flint import acb, fmpq
+from flint import acb
 
+from symflex.balls import ball
 from symflex.budget import spend
 from symflex.expressions import (
     FUNCTIONS,
@@ -111,7 +112,7 @@ def _products_of(tf: TransferFunction) -> Callable[[Expression], Expression | No
                 for i, value in enumerate(wanted or ())
             )
             scale = Fraction(float(first.real)).limit_denominator(SIMPLE)
-            if all(first.overlaps(x) for x in (acb(fmpq(scale.numerator, scale.denominator)), *others)):
+            if all(first.overlaps(x) for x in (acb(ball(scale)), *others)):
                 return of_powers(scale, {Name(b): n for b, n in exponents.items()})
         return None
 
