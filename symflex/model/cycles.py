@@ -88,18 +88,6 @@ def turned_name(name: str, cycles: Fraction | int) -> Expression:
 
 
 @dataclass(frozen=True, slots=True)
-class Counted:
-    """A name that counts cycles, and how it is written in cycles and in radians."""
-
-    degree: Fraction  # exponent of the cycle
-    in_cycles: Expression
-    in_radians: Expression
-    parameters: tuple[str, ...]  # whose cycles they are
-    unit: str  # as it was written, of the first of these
-    scale: Fraction = ONE  # of a parameter, what one of this unit is in SI units
-
-
-@dataclass(frozen=True, slots=True)
 class Factor:
     """A factor of a written product. Exponents are those that it has there."""
 
@@ -117,8 +105,9 @@ class Factor:
     turned: Expression | None = None
     degree: Fraction = ZERO
     names: tuple[str, ...] = ()
-    unit: str = ""
-    scale: Fraction = ONE  # what one of this unit is in SI units
+    parameters: tuple[str, ...] = ()  # whose cycles they are
+    unit: str = ""  # as it was written, of the first of these
+    scale: Fraction = ONE  # of a parameter, what one of this unit is in SI units
     hidden: Fraction = ZERO  # exponent of cycles that have become radians inside
 
 
@@ -185,14 +174,18 @@ class Cycles(AsWritten):
     """Reads the expressions of a model, each use of a frequency by itself."""
 
     reader: Reader
-    counted: dict[str, Counted]  # names that count cycles
     numbers: Mapping[str, Fraction]  # values of parameters that are pure numbers
     measure: Callable[[Expression], Dimension | None]
     is_length: Callable[[Expression], bool]
     eager: Collection[str] = ()  # definitions in radians, which are divided by 2 pi where cycles are needed
     converted: set[str] = field(default_factory=set)  # parameters that became radians somewhere
     kept: set[str] = field(default_factory=set)  # names that are left in cycles somewhere
-    known: dict[str, Factor] = field(default_factory=dict)  # definitions that are more than a name
+    known: dict[str, Factor] = field(default_factory=dict)  # what counts cycles, or is more than a name
+
+    @property
+    def turning(self) -> set[str]:
+        """The names that count cycles."""
+        return {name for name, factor in self.known.items() if factor.kind == "turn"}
 
     def read(self, expression: Expression, *, is_delay: bool = False) -> Expression:
         """Return an expression, or an equation, with 2 pi beside what is read in radians."""
@@ -215,7 +208,7 @@ class Cycles(AsWritten):
             inner = self._without(own, eager, reader)
             lines = {name: inner.define(Definition(name, own[name])).expression for name in order}
             read = [inner.read(root) for root in roots]
-            eager, reader = frozenset(order) & inner.counted.keys() - inner.kept, self.reader
+            eager, reader = frozenset(order) & inner.turning - inner.kept, self.reader
         where = tuple((name, lines.get(name, e)) for name, e in published.where)
         return replace(published, expression=read[0], where=where, scale=read[1] if read[1:] else None)
 
@@ -227,7 +220,6 @@ class Cycles(AsWritten):
 
         return Cycles(
             reader,
-            {n: c for n, c in self.counted.items() if n not in hidden},
             {n: v for n, v in self.numbers.items() if n not in hidden},
             measure,
             lambda e: not names_among(e, hidden) and self.is_length(e),
@@ -251,7 +243,7 @@ class Cycles(AsWritten):
         elif any(f.kind == "period" for f in factors) and self.measure(written) == SECOND:
             self.known[name] = Factor(Name(name), ONE, "period", SECOND)
         if reading.waits and self._is_plain(written, reading):
-            parameters = dict.fromkeys(p for i in reading.open for p in self._parameters(factors[i]))
+            parameters = dict.fromkeys(p for i in reading.open for p in factors[i].parameters)
             unit = next((factors[i].unit for i in sorted(reading.open)), "")
             self.count(name, reading.degree, tuple(parameters), unit)
             turned = reading.open if name in self.eager else frozenset[int]()
@@ -276,7 +268,18 @@ class Cycles(AsWritten):
         is_eager = name in self.eager
         cycles = turned_name(name, -degree) if is_eager else Name(name)
         radians = Name(name) if is_eager else turned_name(name, degree)
-        self.counted[name] = Counted(degree, cycles, radians, parameters, unit, scale)
+        self.known[name] = Factor(
+            cycles,
+            ONE,
+            "turn",
+            self.measure(Name(name)),
+            turned=radians,
+            degree=degree,
+            names=(name,),
+            parameters=parameters,
+            unit=unit,
+            scale=scale,
+        )
 
     def _is_plain(self, written: Expression, reading: ProductReading) -> bool:
         """Tell whether a definition is a frequency, or a number times something else that counts cycles."""
@@ -284,16 +287,13 @@ class Cycles(AsWritten):
         is_frequency = self.measure(written) == PER_SECOND**reading.degree
         return is_frequency or all(d == DIMENSIONLESS for d in others)
 
-    def _parameters(self, factor: Factor) -> tuple[str, ...]:
-        return tuple(p for n in factor.names for p in self.counted[n].parameters)
-
     def _read(self, reading: ProductReading, written: Expression) -> Expression:
         """Return a product in which what is open becomes radians; two readings are noted."""
         for i, factor in enumerate(reading.factors):
             if i in reading.open and reading.degree:
-                self.converted |= {*self._parameters(factor)}
+                self.converted |= {*factor.parameters}
             elif factor.kind == "turn":
-                self.kept |= {*factor.names, *self._parameters(factor)}
+                self.kept |= {*factor.names, *factor.parameters}
         if reading.problem:
             self._note(reading, written)
         return _chosen(reading, written, reading.open if reading.degree else frozenset())
@@ -301,7 +301,7 @@ class Cycles(AsWritten):
     def _note(self, reading: ProductReading, written: Expression) -> None:
         turns = [f for f in reading.factors if f.kind in ("turn", "period")]
         names = list(dict.fromkeys(n for f in turns for n in f.names))
-        units = dict.fromkeys(self.counted[p].unit for f in turns for p in self._parameters(f))
+        units = dict.fromkeys(self.known[p].unit for f in turns for p in f.parameters)
         quoted = " and ".join(f"'{n}'" for n in names)
         message, hint = PROBLEMS[reading.problem]
         said = {
@@ -340,21 +340,12 @@ class Cycles(AsWritten):
                 return Factor(node, exponent, "number", DIMENSIONLESS, pis=exponent)
             case Name(name) if name == LAPLACE:
                 return Factor(node, exponent, "s", PER_SECOND)
-            case Name(name) if name in self.counted:
-                own, dimension = self.counted[name], self.measure(node)
-                return Factor(
-                    replace(own.in_cycles, span=node.span),
-                    exponent,
-                    "turn",
-                    dimension,
-                    turned=replace(own.in_radians, span=node.span),
-                    degree=own.degree * exponent,
-                    names=(name,),
-                    unit=own.unit,
-                    scale=own.scale,
-                )
             case Name(name) if name in self.known:
-                return _raised(self.known[name], node, exponent)
+                own = self.known[name]
+                if own.turned is None:
+                    return _raised(own, node, exponent)
+                turned = replace(own.turned, span=node.span)
+                return replace(_raised(own, replace(own.node, span=node.span), exponent), turned=turned)
             case Name(name):
                 is_decimal = _is_decimal_of_pi(self.numbers.get(name, ONE), CLOSER)
                 own_dimension, is_length = self.measure(node), self.is_length(node)
@@ -388,6 +379,7 @@ class Cycles(AsWritten):
                 turned=with_children(node, [_chosen(r, t, r.open) for r, t in pairs]),
                 degree=degrees.pop() * exponent,
                 names=tuple(n for f in turns for n in f.names),
+                parameters=tuple(p for f in turns for p in f.parameters),
                 unit=units.pop() if len(units) == 1 else "",
             )
         kinds = {f.kind for r in readings for f in r.factors}
@@ -422,7 +414,7 @@ def converted(
         return own is not None and own != DIMENSIONLESS and own == METRE**own.m
 
     def started(eager: Collection[str], notes: Reader) -> Cycles:
-        made = Cycles(notes, {}, numbers, measure, is_length, eager)
+        made = Cycles(notes, numbers, measure, is_length, eager)
         for name, q in counting.items():
             made.count(name, Fraction(q.cycles), (name,), q.unit, unit_of(q.unit).scale)
         return made
@@ -432,7 +424,7 @@ def converted(
         first.define(definition)
     rewritten(draft, first.read)
     # A definition is in radians if nothing needs its cycles: then it prints as an angular frequency.
-    eager = turned | (first.counted.keys() - counting.keys() - first.kept)
+    eager = turned | (first.turning - counting.keys() - first.kept)
     cycles = started(eager, reader)
     defined = tuple(map(cycles.define, draft.definitions))
     return rewritten(replace(draft, definitions=defined), cycles.read), cycles
@@ -509,6 +501,7 @@ def _raised(factor: Factor, node: Expression, exponent: Fraction) -> Factor:
         pis=factor.pis * exponent,
         twos=(up, down) if exponent > 0 else (down, up),
         value=factor.value ** int(exponent) if is_whole else ONE,
+        degree=factor.degree * exponent,
         hidden=factor.hidden * exponent,
     )
 
