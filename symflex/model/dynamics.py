@@ -124,9 +124,11 @@ class ExpressionReader(ABC):
         self, reading: Dynamics[Factored | LinearForm], factor: Factored, poles: Factored
     ) -> Dynamics[Factored | LinearForm]:
         """Return a reading in series with a constant; nothing is connected where the product is zero."""
-        value = reading.value * factor
-        is_zero = value.is_zero if isinstance(value, Factored) else not value.terms
-        return Dynamics(value, self.one if is_zero else reading.poles * poles)
+        value, poles = reading.value * factor, reading.poles * poles
+        coefficients = (value,) if isinstance(value, Factored) else value.coefficients
+        if not poles.is_one and all(map(self.vanishes, coefficients)):
+            return Dynamics(value * Factored.number(self.ring, 0), self.one)
+        return Dynamics(value, poles)
 
     def _product(
         self,

@@ -241,3 +241,23 @@ def test_a_point_of_a_field_is_asked_for():
     assert found.linear(parse("2*w(m)")).terms[0][1].unit == 2
     assert found.constant(parse("sqrt(9/4)")).unit == Fraction(3, 2)
     assert asked == ["w"]
+
+
+def test_a_coefficient_that_is_zero_by_its_values_connects_nothing():
+    # u = F/(s + 2) + zz (...) is F/(s + 2) with zz = 0: its only pole is -2
+    text = """symflex = 1
+parameters = {{ p = {{ value = {p}, assume = "real" }}, q = 1, T = "1 s" }}
+definitions.zz = "{zz}"
+signals.u = "F/(s*T + 2) + {term}"
+inputs.F = {{}}
+outputs.Y = "u"
+"""
+    terms = ("zz*F/(s*T - 1)", "zz/(s*T - 1)*F", "(zz + zz*s*T)*F/(s*T - 1)", "zz*(F + u)/(sqrt(s*T) - 2)")
+    for p, zz in ((1, "p - q"), (1, "p^2 - p*q"), (0, "p")):
+        for term in terms:
+            model = pipeline.loads(text.format(p=p, zz=zz, term=term))
+            (bound,) = pipeline.derive_bound(model, model.transfer_functions)
+            found = pipeline.roots(bound)
+            assert found.verdict.sentence == "stable", (zz, term)
+            assert [complex(root) for root in found.poles] == [-2], (zz, term)
+            assert found.hidden == (), (zz, term)
