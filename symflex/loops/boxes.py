@@ -31,6 +31,7 @@ from symflex.roots.distributed.far_out import right_tail
 from symflex.roots.functions.exponential_values import ExponentialValues, Place, Summed, sums_of
 from symflex.roots.functions.kernel_function import KernelFactors
 from symflex.roots.passivity import energy_proof
+from symflex.roots.pole_zero_map import WITHOUT_END
 from symflex.transfer import BoundTransferFunction, TransferFunction
 from symflex.transfer.enclose import constant_tangent, enclosure, first_order
 from symflex.transfer.enclose_kernels import KernelValues
@@ -164,6 +165,7 @@ class CharacteristicFunction:
                 self.kernels(self.tf, tuple(((low + high) / 2,) * 2 for low, high in box))
             return error.diagnostics[0].message
         unknown = [end for end in ends if isinstance(end, str)]
+        unknown.sort(key=lambda end: WITHOUT_END not in end)  # one such factor decides for all
         return unknown[0] if unknown else max(map(float, ends), default=0.0)
 
     def narrowed(self, box: OpenBox, bits: int = BITS, path: Path = AXIS) -> OpenBox:

@@ -31,7 +31,7 @@ from symflex.model import ModelParameter
 from symflex.print.notebook import Printed
 from symflex.print.text import INDENT, Passage
 from symflex.roots.locate import locate
-from symflex.roots.pole_zero_map import PoleZeroMap, StabilityVerdict
+from symflex.roots.pole_zero_map import WITHOUT_END, PoleZeroMap, StabilityVerdict
 from symflex.roots.region import Modes
 from symflex.roots.root import count_roots
 from symflex.transfer import bind
@@ -326,9 +326,13 @@ class _CellSearch:
 
 
 def cells_without(box: OpenBox) -> npt.NDArray[np.bool_]:
-    """Return which cells of a box contain no parameters for which a root is on the axis."""
+    """Return which cells of a box have no parameters with a root on the axis, or poles without end."""
     shape = (PARTS,) * len(box.box)
-    if not box.is_bounded or (any(box.pieces) and not box.lines):
+    if isinstance(
+        box.radius, str
+    ):  # infinitely many poles are on the right for all values, or it is not known
+        return np.full(shape, WITHOUT_END in box.radius)
+    if any(box.pieces) and not box.lines:
         return np.zeros(shape, dtype=bool)
     free = np.ones(shape, dtype=bool)
     # Middles of cells, half a box away from its middle at most.

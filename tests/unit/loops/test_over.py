@@ -490,3 +490,17 @@ def test_charts_of_random_loops_say_what_numeric_roots_say(seed: int) -> None:
         open_points += said == "undecided"
         assert said in ("undecided", f"unstable by {right}" if right else "stable")
     assert open_points <= 5
+
+
+def test_a_chart_over_poles_without_end_says_where_they_grow() -> None:
+    # v = K exp(-s T) v + d: exp(s T) = K, Re s = ln(K)/T: the model is stable for K < 1 and for no other K.
+    text = """symflex = 1
+parameters = { K = 1, T = "0.5 s", a = "1 s" }
+signals = { y = "(r - y)/(s*a)", v = "K*exp(-s*T)*v + d" }
+inputs = { r = {}, d = {} }
+outputs = { Y = "y", V = "v" }
+"""
+    chart = loads(text).stability(over=("K", "T"), ranges={"K": (0.5, 2.5), "T": (0.1, 1)}, resolve=0.2)
+    assert chart.decided >= 0.8
+    for k, late in ((0.6, 0.5), (0.6, 0.9), (1.6, 0.2), (2.2, 0.5), (2.4, 0.9)):
+        assert chart.at(k, late) == ("stable" if k < 1 else "unstable"), (k, late)
