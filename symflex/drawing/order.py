@@ -19,8 +19,7 @@ from symflex.drawing.symbols import DOTS
 
 BRIDGE: Final = 0.5  # what it costs that a part joins no neighbours, besides what it spans
 MEMBER: Final = 3.0  # how much more that is of a member, which is long and looks stiff at corners
-MOST_MOVES: Final = 40  # rounds of moving single nodes; small networks need three or four
-LARGEST: Final = 40  # nodes of a network whose order is improved; longer ones are chains
+LARGEST: Final = 40  # nodes of a network that is walked from each of them; longer ones are chains
 LANES: Final = {"rotation": 1, "translation": 2, "planar": 2, "plane": 2}
 """Which domain stands to the left of which, where a part joins both; circuits stand at 0."""
 LONGEST: Final = 8  # links of a chain that is drawn as a whole
@@ -82,16 +81,6 @@ def _ordered(
     for candidate in [_walked(beside, node) for node in nodes]:
         if (price := cost(candidate)) < least - 1e-9:
             best, least = candidate, price
-    for _ in range(MOST_MOVES):
-        before = best
-        for node in nodes:
-            rest = [n for n in best if n != node]
-            for i in range(len(best)):
-                candidate = [*rest[:i], node, *rest[i:]]
-                if (price := cost(candidate)) < least - 1e-9:
-                    best, least = candidate, price
-        if best is before:
-            break
     return best
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from symflex.data.fitting.least_squares import FLAT, Refined, widened
 from symflex.data.fitting.lines import isolated, single_lines, step_line, wild_lines
+from symflex.data.fitting.minimum_phase import PhaseTest, judge_phase, not_judged
 from symflex.data.fitting.noise import rounding, with_noise, with_rough_noise
 from symflex.data.fitting.observation import FittedLines
 from symflex.data.fitting.order import (
@@ -30,7 +31,6 @@ from symflex.data.fitting.order import (
     refitted,
     with_own_noise,
 )
-from symflex.data.fitting.phase_test import PhaseTest, judge_phase, not_judged
 from symflex.data.fitting.problem import FitProblem, fit_problem
 from symflex.data.fitting.resonances import LOGARITHMIC, UNITS, Complex, Free, Mask, Resonances, Values, Whole
 from symflex.data.fitting.starts import with_delays

@@ -1,5 +1,7 @@
 """The element library. A new element is one file and one line in ``ELEMENTS``."""
 
+from collections.abc import Iterable
+
 from symflex.library import ParameterPort, Sign
 from symflex.library.elements import coupling, line, lumped, rigid
 from symflex.library.elements.element import (
@@ -80,9 +82,19 @@ ELEMENTS: dict[str, Element] = {
     )
 }
 
-LUMPED: dict[str, str] = {
-    e.parameters[0].unit: e.type_name
-    for e in ELEMENTS.values()
-    if isinstance(e, lumped.Branch | lumped.Impedance)
-}
-"""Elements of one value, by its unit, and no two have the same."""
+
+def by_unit(elements: Iterable[Element]) -> dict[str, str]:
+    """Return types of one value by its unit; ValueError if two have the same, as hints name one of them."""
+    types: dict[str, str] = {}
+    for element in elements:
+        if isinstance(element, lumped.Branch | lumped.Impedance):
+            unit = element.parameters[0].unit
+            if unit in types:
+                message = f"'{types[unit]}' and '{element.type_name}' both have one value in {unit}"
+                raise ValueError(message + ": let the second one be no Branch or Impedance, but stamp itself")
+            types[unit] = element.type_name
+    return types
+
+
+LUMPED = by_unit(ELEMENTS.values())
+"""Elements of one value, by its unit."""

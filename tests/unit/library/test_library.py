@@ -1,8 +1,12 @@
 """Every block is the transfer function its summary states."""
 
+import pytest
 import sympy
 
 import symflex
+from symflex.library import ParameterPort
+from symflex.library.elements import ELEMENTS, by_unit, lumped
+from symflex.library.elements.element import Port
 
 s, p, q, u, v = sympy.symbols("s p q u v")
 HEADER = "symflex = 1\n[parameters]\np = {}\nq = {}\nu = {}\nv = {}\n[blocks]\n"
@@ -54,3 +58,13 @@ def test_a_resonance_has_unit_gain_at_low_frequency():
 def test_a_block_may_use_one_declared_after_it():
     text = f'{HEADER}G = {{ type = "tf", num = "H" }}\nH = {{ type = "integrator" }}{ENDING}'
     assert sympy.cancel(quotient(text) - 1 / s) == 0
+
+
+def test_two_types_of_one_value_in_the_same_unit_are_refused():
+    class Inerter(lumped.Branch):
+        type_name = "inerter"
+        ports = (Port("between", 2, "translation", "the two ends"),)
+        parameters = (ParameterPort("B", "kg", "an inertance"),)
+
+    with pytest.raises(ValueError, match="'mass' and 'inerter' both have one value in kg"):
+        by_unit([*ELEMENTS.values(), Inerter()])
