@@ -157,7 +157,8 @@ class Solving:
                 self.calls |= {pair[0]: replace_values(pair[1], self.calls)}
             formulas.append((unknown, row))
             values = {unknown: solution} if min(others) else {}
-            rows = [replace(r, residual=simplified(r.residual, values)) for r in rows if r is not row]
+            kept = [replace(r, residual=replace_values(r.residual, self.calls)) for r in rows if r is not row]
+            rows = [replace(r, residual=simplified(r.residual, values)) for r in kept]
         ours = [r for r in rows if any(Name(p) in nodes(r.residual) for p in wanted)]
         together = [p for p in wanted if any(Name(p) in nodes(r.residual) for r in ours)]
         ours = ours[: len(together)]

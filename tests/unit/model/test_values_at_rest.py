@@ -193,6 +193,19 @@ def test_a_root_that_has_one_sign_near_the_declared_values_is_solved_there_alone
     assert _refused(given.replace("w_0 = 0.001", "w_0 = 0.006"))
 
 
+def test_tanks_that_act_on_each_other_rest_where_all_that_comes_in_goes_out():
+    # Torricelli twice: sqrt(2 g (h_1 - h_2)) = q/a and sqrt(2 g h_2) = (q - w)/a
+    values = {"A": 1, "a": 5e-4, "g": 9.81, "q_0": 2e-3, "w_0": 5e-4}
+    equations = ["A*h1' = q - a*sqrt(2*g*(h1 - h2))", "A*h2' = a*sqrt(2*g*(h1 - h2)) - w - a*sqrt(2*g*h2)"]
+    text = _text(values, ["h1", "h2"], equations, {"q": "q_0", "w": "w_0"}, ["h1", "h2"], ["q", "w"])
+    assert _solved(text) == {"h1_0": pytest.approx(25 / 19.62), "h2_0": pytest.approx(9 / 19.62)}
+    # slopes a g/sqrt(...) = a^2 g/q and a^2 g/(q - w)
+    one, two = 2.5e-7 * 9.81 / 2e-3, 2.5e-7 * 9.81 / 1.5e-3
+    found = load(text).transfer_function("Y/q").bind().poles()
+    expected = np.linalg.eigvals([[-one, one], [one, -one - two]])
+    assert sorted(complex(p).real for p in found) == pytest.approx(sorted(expected), rel=1e-9)
+
+
 def test_a_square_that_is_solved_for_is_not_followed_to_where_it_is_negative():
     # C i^2/x^2 = m g - F: no current holds the ball against F > m g = 0.4905
     values = {"m": 0.05, "g": 9.81, "C": 1e-4, "x_0": 0.01, "F_0": 0.2, "R": 2}
