@@ -122,8 +122,8 @@ def show_response(spec: Specification, given: RespondOptions) -> int:
                 response.to_json_dict() | ({"step_info": info.to_json_dict(given.digits)} if info else {})
             )
         else:
-            compared = [response.comparison] if response.comparison else _growth(roots)
-            say(response_text(response, info.lines(response.unit) if info else compared))
+            about = [response.comparison] if response.comparison else _growth(roots)
+            say(response_text(response, [*(info.lines(response.unit) if info else ()), *about]))
     if given.strict and not response.certified:
         raise UncertifiedError(Diagnostic("SF810", f"not every value is certified: {response.reason}"))
     return 0
@@ -149,10 +149,13 @@ def _samples(
 
 
 def _growth(known: PoleZeroMap | None) -> list[str]:
-    """Return a line that says so where a response grows; poles may be unknown."""
-    if known is None or not any(root.re > 0 for root in known.all_poles):
+    """Return a line that says so where a response grows, or hidden motion does; poles may be unknown."""
+    if known is None or known.verdict.word != "unstable":
         return []
-    return [f"the response grows without bound; the system is {known.verdict.sentence}"]
+    if any(root.re > 0 for root in known.all_poles):
+        return [f"the response grows without bound; the system is {known.verdict.sentence}"]
+    motion = known.verdict.hidden_motion
+    return [f"the system is {known.verdict.sentence}", *([motion] if motion else [])]
 
 
 def _check_options(given: RespondOptions, *, is_file: bool) -> None:

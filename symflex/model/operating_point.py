@@ -115,10 +115,10 @@ def read_operating_point(
         meant = replace_values(value, {Name(n): v for n, v in values.items()})
         value = meant if len(nodes(meant)) < LONGEST else value
         values[entry.key] = number(0) if literal == 0 else value
-    for p in {*solve} & {*moving} & {*values}:
+    for p in {*solve} & {*values}:
         message = f"'{p}' has a value in [operating_point], and is to be solved for"
         reader.note("SF210", message, values[p].span or section.span, "leave out one of them")
-    unknown = {p: _unused(p, {*taken, *moving}) for p in solve if p in moving and p not in values}
+    unknown = {p: _unused(p, {*taken, *moving}) for p in solve if p.rstrip("'") in moving and p not in values}
     values |= {p: Name(name) for p, name in unknown.items()}
     wanted = tuple(unknown.get(p, p) for p in solve)
     return AtRest(values, wanted, tuple(declared), tuple(definitions), section.span)

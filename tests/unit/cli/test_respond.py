@@ -414,3 +414,18 @@ def test_what_is_not_certified_has_an_estimated_error_and_no_radius():
     estimated = replace(response, certified=False, reason="so")
     heads = [text.splitlines()[2].split()[3:] for text in map(response_text, (response, estimated))]
     assert heads == [["radius"], ["est.", "error"]]
+
+
+def test_a_response_that_settles_says_that_a_hidden_mode_grows(shell, tmp_path):
+    text = """
+        symflex = 1
+        blocks = { P = "1/(s - 3)", C = "(s - 3)/(s + 2)" }
+        signals = { y = "P*C*u" }
+        inputs = { u = {} }
+        outputs = { Y = "y" }
+        """
+    (tmp_path / "hidden.toml").write_text(text, encoding="utf-8")
+    out = shell("respond", "hidden.toml").out
+    assert "final value              0.5000000000" in out  # 1/(0 + 2)
+    assert "the system is unstable: 1 pole in the right half-plane" in out
+    assert "a hidden pole in the right half-plane" in out

@@ -521,3 +521,15 @@ def test_a_fan_brakes_a_shaft_of_elements_that_turns(speed, given):
     s = 2 + 7j
     expected = s * 300 / ((0.01 * s**2 + 300) * (0.2 * s**2 + 2 * 2e-4 * 150 * s + 300) - 300**2)
     assert model.transfer_function("W/T").bind()(s) == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_rate_is_solved_for_by_its_name():
+    model = Model(
+        parameters={"J": 0.2, "k": 0.3, "R": 0.5, "U": 60, "b": 0.02},
+        equations={"unknowns": ["q"], "equations": ["J*q'' = k*(u - k*q')/R - b*q'"]},
+        operating_point={"u": "U", "solve": ["q'"]},
+        inputs={"u": {}},
+        outputs={"W": "q'"},
+    )
+    (speed,) = model.resolved.operating_point.found
+    assert float(speed.value) == pytest.approx(0.3 * 60 / 0.5 / (0.3**2 / 0.5 + 0.02))
