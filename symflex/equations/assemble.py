@@ -468,7 +468,7 @@ class _Assembly:
             reading = Dynamics(ratio, evaluator.in_s(ratio.denominator()) * hidden)
         else:
             return None
-        return Dynamics(self._radicals.tidy(reading.value), reading.poles)
+        return Dynamics(*map(self._radicals.tidy, (reading.value, reading.poles)))
 
     def _with_poles(
         self, name: str, written: Expression, evaluator: ExactEvaluator

@@ -137,14 +137,15 @@ class ExactEvaluator(ExpressionReader):
         """Return what an expression is read as, compared with its tree at the point."""
         try:
             reading = self.series(expression)
-            value = reading.value
+            value, poles = reading.value, reading.poles
             if isinstance(value, LinearForm):
                 value = without_squares(value, self.radicals)
             elif self.radicals:
                 value = self.radicals.tidy(value)
+            poles = self.radicals.tidy(poles) if self.radicals else poles
             if expression.children and self.is_decided:
                 compare(expression, number_of_form(value, self.place), self.number_of_leaf, self.prime)
-            return Dynamics(value, reading.poles)
+            return Dynamics(value, poles)
         except BudgetError as error:
             located = (replace(d, span=d.span or expression.span) for d in error.diagnostics)
             raise BudgetError(*located) from None

@@ -332,6 +332,28 @@ G = {block}
         assert found == pytest.approx(visible, abs=1e-8), block
 
 
+def test_squares_of_roots_and_of_j_in_state_equations_hide_nothing():
+    # det(s - A) = s (s + 1) - sqrt(a)^2 with a = 2: the loop s^2 + s - 2 + 5 sqrt(2) is stable.
+    loop = 'A = [[0, "sqrt(a)"], ["sqrt(a)", -1]], B = [0, 5], C = [1, 0]'
+    # (s + 2 - 3j)(s + 2 + 3j), and with the unit feedback of r - y: s^2 + 6 s + 17
+    pair = 'A = [["-2 + 3*j", 0], [0, "-2 - 3*j"]], B = [1, 1], C = [1, 1]'
+    for block, poles in [(loop, np.roots([1, 1, 5 * 2**0.5 - 2])), (pair, np.roots([1, 6, 17]))]:
+        text = f"""symflex = 1
+parameters.a = 2
+inputs.r = {{}}
+outputs.Y = "y"
+signals.y = "R*(r - y)"
+blocks.R = {{ type = "ss", {block} }}
+"""
+        model = pipeline.loads(text)
+        (bound,) = pipeline.derive_bound(model, model.transfer_functions)
+        found = locate(bound, None, 15)
+        assert not found.hidden, block
+        right = sorted(poles, key=lambda z: z.imag)
+        assert sorted(map(complex, found.poles), key=lambda z: z.imag) == pytest.approx(right)
+        assert found.verdict.word == "stable"
+
+
 def test_nothing_is_connected_through_a_gain_of_zero():
     tf, found = hidden(signals='y = "r/(s + 2) + 0*P*C*r"')
     assert (tf.order, found) == ((0, 1), [])
