@@ -61,6 +61,8 @@ COMMANDS = (
     "export pid.toml --to st --sample 5ms -o exported.st",
     "export pid.toml --to numpy --sample 5ms -o stepped.py",
     "export --help",
+    "decay model.toml",
+    "decay pid.toml --tf u/e --json",
 )
 RUN = """
 import contextlib, io, json, sys
@@ -195,3 +197,13 @@ def test_the_contract_of_elements_and_blocks_holds_with_the_additions(extended):
     options = ["-q", "-p", "no:cacheprovider", "-p", "no:xdist"]
     options += ["--import-mode=importlib", "-k", "test_elements or a_block"]
     python(extended, "-m", "pytest", *options, "tests/contract")
+
+
+@pytest.mark.slow
+def test_the_new_command_proves_its_number(said):
+    # (m + B) s^2 + k is undamped; the pole of k_p (1 + T_d s/(1 + T_f s)) is -1/T_f = -50.
+    assert said["decay model.toml"] == "slowest pole: Re s = 0 1/s   certified\n"
+    assert json.loads(said["decay pid.toml --tf u/e --json"]) == {
+        "rate": {"value": "-50.0000000000", "radius": "0"},
+        "certified": True,
+    }
