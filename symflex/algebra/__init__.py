@@ -7,6 +7,7 @@ from symflex.algebra.factored import (
     common_denominator,
     composed,
     evaluated,
+    in_lowest_terms,
     least_common_multiple,
     random_point,
     residue,

@@ -25,6 +25,7 @@ from symflex.algebra.ring import (
 )
 from symflex.algebra.sparse import Monomial
 from symflex.balls import Arithmetic, ball, raised
+from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic
 
 
@@ -218,6 +219,66 @@ class Factored:
                     )
                 )
         return prod((factor**e for factor, e in self.factors), start=self.ring.constant(int(unit)))
+
+
+def in_lowest_terms(
+    numerator: Factored,
+    denominator: Factored,
+    are_coprime: Callable[[fmpz_mpoly, fmpz_mpoly], bool] = lambda _f, _g: False,
+) -> tuple[Factored, Factored]:
+    """Return a quotient in lowest terms, and the common factor; ``are_coprime`` may prove factors coprime.
+
+    >>> s = Factored.generator(Ring(("s",)), "s")
+    >>> quotient, shared = in_lowest_terms((s + 2) * (s**2 - 1), (s - 1) ** 2 * (s + 3))
+    >>> str(quotient), str(shared)
+    ('(s + 2)*(s + 1)*(s - 1)^-1*(s + 3)^-1', '(s - 1)')
+    """
+    ring = numerator.ring
+    quotient = numerator / denominator
+    if quotient.is_zero:
+        return quotient, Factored.number(ring, 1)
+    shared = Factored.number(ring, 1)
+    for factor, exponent in numerator.factors:
+        other = denominator.exponent_of(factor)
+        if exponent > 0 and other > 0:
+            shared = shared * Factored(ring, Fraction(1), ((factor, min(exponent, other)),))
+    above = [(f, e) for f, e in quotient.factors if e > 0]
+    below = [(f, -e) for f, e in quotient.factors if e < 0]
+    i, changed = 0, False
+    while i < len(above):
+        j = 0
+        while j < len(below):
+            spend()
+            f, m = above[i]
+            g, n = below[j]
+            if are_coprime(f, g) or (common := f.gcd(g)).is_constant():
+                j += 1
+                continue
+            power = min(m, n)
+            shared, changed = shared * Factored.polynomial(ring, common) ** power, True
+            above[i : i + 1] = _pieces(f, common, m, power)
+            below[j : j + 1] = _pieces(g, common, n, power)
+            if i >= len(above):
+                break
+            j = 0
+        i += 1
+    if not changed:
+        return quotient, shared
+    result = Factored.number(ring, quotient.unit)
+    for f, e in above:
+        result = result * Factored.polynomial(ring, f) ** e
+    for f, e in below:
+        result = result / Factored.polynomial(ring, f) ** e
+    return result, shared
+
+
+def _pieces(
+    factor: fmpz_mpoly, common: fmpz_mpoly, exponent: int, power: int
+) -> list[tuple[fmpz_mpoly, int]]:
+    """Return ``factor**exponent / common**power`` as factors with positive exponents."""
+    rest = factor / common
+    pieces = [(rest, exponent), (common, exponent - power)]
+    return [(f, e) for f, e in pieces if e > 0 and not f.is_constant()]
 
 
 def least_common_multiple(start: Factored, values: Iterable[Factored]) -> Factored:

@@ -22,6 +22,7 @@ from symflex.algebra import (
     Radicals,
     Ring,
     composed,
+    in_lowest_terms,
     residue,
     terms_of,
 )
@@ -273,6 +274,7 @@ class Opener:
 def extent(expression: Expression) -> tuple[int, int]:
     """Return how many parts a tree has, and how many levels.
 
+    >>> from symflex.expressions import Negative, Sum
     >>> extent(Sum((Name("x"), Negative(Name("y")))))
     (4, 3)
     """
@@ -306,15 +308,7 @@ def shared_by_sides(value: Factored) -> Factored:
         used = value.ring.used_in(f for f, _ in value.factors)
         dense = Ring(tuple(name for name in value.ring.names if name in used))
         return _carried(shared_by_sides(_carried(value, dense)), value.ring)
-    above, below, shared = value.numerator(), value.denominator(), Factored.number(value.ring, 1)
-    for own, exponent in below.factors:
-        left = own
-        for factor, power in above.factors:
-            common = left.gcd(factor)
-            if not common.is_constant():
-                shared = shared * Factored.polynomial(value.ring, common) ** min(exponent, power)
-                left = left / common
-    return shared
+    return in_lowest_terms(value.numerator(), value.denominator())[1]
 
 
 def _carried(value: Factored, ring: Ring) -> Factored:

@@ -328,9 +328,7 @@ class _CellSearch:
 def cells_without(box: OpenBox) -> npt.NDArray[np.bool_]:
     """Return which cells of a box have no parameters with a root on the axis, or poles without end."""
     shape = (PARTS,) * len(box.box)
-    if isinstance(
-        box.radius, str
-    ):  # infinitely many poles are on the right for all values, or it is not known
+    if isinstance(box.radius, str):  # poles are on the right without end for all values, or none is known
         return np.full(shape, WITHOUT_END in box.radius)
     if any(box.pieces) and not box.lines:
         return np.zeros(shape, dtype=bool)

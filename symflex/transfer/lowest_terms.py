@@ -13,15 +13,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
 from random import Random
 
 from flint import fmpz_mpoly, nmod_poly
 
-from symflex.algebra import LAPLACE, Factored, PolynomialMemo, Radicals, Ring, degree_in
+from symflex.algebra import (
+    LAPLACE,
+    Factored,
+    PolynomialMemo,
+    Radicals,
+    Ring,
+    degree_in,
+    in_lowest_terms,
+)
 from symflex.algebra.radicals import Point
-from symflex.budget import spend
 from symflex.equations.elimination import Determinants
 from symflex.equations.elimination.determinants import DegreeBounds, Minors
 
@@ -39,53 +45,7 @@ def cancel(
         if more.is_one:
             return reduced, shared
         return cancel(reduced.numerator(), reduced.denominator(), images)[0], shared * more
-    ring = numerator.ring
-    quotient = numerator / denominator
-    if quotient.is_zero:
-        return quotient, Factored.number(ring, 1)
-    shared = Factored.number(ring, 1)
-    for factor, exponent in numerator.factors:
-        other = denominator.exponent_of(factor)
-        if exponent > 0 and other > 0:
-            shared = shared * Factored(ring, Fraction(1), ((factor, min(exponent, other)),))
-    above = [(f, e) for f, e in quotient.factors if e > 0]
-    below = [(f, -e) for f, e in quotient.factors if e < 0]
-    images = images or LineImages(ring)
-    i, changed = 0, False
-    while i < len(above):
-        j = 0
-        while j < len(below):
-            spend()
-            f, m = above[i]
-            g, n = below[j]
-            if images.prove_coprime(f, g) or (common := f.gcd(g)).is_constant():
-                j += 1
-                continue
-            power = min(m, n)
-            shared, changed = shared * Factored.polynomial(ring, common) ** power, True
-            above[i : i + 1] = _pieces(f, common, m, power)
-            below[j : j + 1] = _pieces(g, common, n, power)
-            if i >= len(above):
-                break
-            j = 0
-        i += 1
-    if not changed:
-        return quotient, shared
-    result = Factored.number(ring, quotient.unit)
-    for f, e in above:
-        result = result * Factored.polynomial(ring, f) ** e
-    for f, e in below:
-        result = result / Factored.polynomial(ring, f) ** e
-    return result, shared
-
-
-def _pieces(
-    factor: fmpz_mpoly, common: fmpz_mpoly, exponent: int, power: int
-) -> list[tuple[fmpz_mpoly, int]]:
-    """Return ``factor**exponent / common**power`` as factors with positive exponents."""
-    rest = factor / common
-    pieces = [(rest, exponent), (common, exponent - power)]
-    return [(f, e) for f, e in pieces if e > 0 and not f.is_constant()]
+    return in_lowest_terms(numerator, denominator, (images or LineImages(numerator.ring)).prove_coprime)
 
 
 LARGE = 40  # number of terms of the larger polynomial from which the proof is tried first

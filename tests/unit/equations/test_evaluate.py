@@ -8,7 +8,7 @@ import pytest
 from symflex import pipeline
 from symflex.algebra import PRIME, Factored, Ring, residue
 from symflex.equations.distributed import read_equation
-from symflex.equations.evaluate import Dynamics, ExactEvaluator, exact_root
+from symflex.equations.evaluate import Dynamics, ExactEvaluator, exact_root, shared_by_sides
 from symflex.errors import BudgetError, ModelError, Source, Span, Text
 from symflex.expressions import Name, names, parse_equation
 from symflex.expressions import parse as parse_text
@@ -261,3 +261,11 @@ outputs.Y = "u"
             assert found.verdict.sentence == "stable", (zz, term)
             assert [complex(root) for root in found.poles] == [-2], (zz, term)
             assert found.hidden == (), (zz, term)
+
+
+def test_a_factor_that_two_denominators_have_is_shared_as_often_as_above():
+    # (s - 1) (s + 5) over (s - 1) (s + 2) times (s - 1) (s + 3), which sums have left multiplied out
+    ring = Ring(("s",))
+    s = ring.generator("s")
+    above, *below = (Factored.polynomial(ring, (s - 1) * (s + n)) for n in (5, 2, 3))
+    assert str(shared_by_sides(above / below[0] / below[1])) == "(s - 1)"
