@@ -8,8 +8,9 @@ Output: its leading term at both ends, in words and with its value, and the freq
 At s = 0 kernels are their Taylor series, exactly, in which powers of wavenumbers are powers of s. For large
 s > 0 one exponential outweighs all others in numerator and denominator, and a wavenumber is a root of what
 leads in its square or fourth power; of terms with that exponential the highest power of s leads. So terms are
-exact where they are not zero. Before one is shown, its text is read again and divided into the function, in
-balls at points of the positive axis ever closer to that end: the quotient has to tend to 1.
+exact where they are not zero. If no wavenumber vanishes at s = 0, the term is the value there. Before one is
+shown, its text is read again and divided into the function, in balls at points of the positive axis ever
+closer to that end: the quotient has to tend to 1.
 """
 
 from __future__ import annotations
@@ -31,7 +32,8 @@ from symflex.algebra.factored import composed
 from symflex.algebra.ring import by_powers, coefficients_of
 from symflex.balls import ball, precision
 from symflex.errors import Diagnostic, SymflexError, UsageError
-from symflex.expressions import Expression, Number, format_expression, number, product_of
+from symflex.expressions import Expression, Name, Number, format_expression, number, product_of
+from symflex.expressions.derivative import simplified
 from symflex.letters.routh import aligned, read
 from symflex.print.forms import print_form
 from symflex.print.forms.notation import reachable
@@ -89,6 +91,7 @@ class Row(NamedTuple):
     value: float | None = None  # with the declared numbers, in SI units
     unit: str = ""
     power: Fraction | None = None  # of s, where there is nothing but that beside the value
+    where: tuple[tuple[str, Expression], ...] = ()  # names in it that the model does not have
 
     @property
     def comment(self) -> str:
@@ -114,7 +117,9 @@ class InLetters:
         from symflex.print.sympy import symbols_of, to_sympy  # a terminal does without SymPy
 
         row = self.row(name)
-        return None if row is None else to_sympy(row.expression, symbols_of(self.tf.model))
+        if row is None:
+            return None
+        return to_sympy(with_lines(row.expression, dict(row.where)), symbols_of(self.tf.model))
 
     def __str__(self) -> str:
         return self.text()
@@ -122,7 +127,8 @@ class InLetters:
     @property
     def where(self) -> list[Row]:
         """Lines for the names of the model that occur."""
-        lines, writer = definitions_of(self.tf), Writer(model_labels(self.tf.model))
+        own = {name: line for row in self.rows for name, line in row.where}
+        lines, writer = [*definitions_of(self.tf), *own.items()], Writer(model_labels(self.tf.model))
         used = reachable([row.expression for row in self.rows], lines)
         return [Row(f"where {name}", " =", f"{writer.label(name).latex} &=", line) for name, line in used]
 
@@ -165,7 +171,7 @@ def limits_of(tf: AnyTransferFunction) -> InLetters:
         between = slopes[0] - slopes[1]
         powers = times((found[ENDS[1]][1], 1 / between), (found[ENDS[0]][1], -1 / between))
         corner = written_powers({base: n for base, n in powers.items() if base != MINUS})
-        at = value_of(tf, corner)
+        at = value_of(tf, with_lines(corner, dict(rows[0].where)))
         if at or (at is None and not any(isinstance(n, e.Negative) for n in e.nodes(corner))):
             said = f"{at / tau:.6g} Hz" if at else ""
             rows.append(Row("both meet at", ":  ", r"\omega &=", corner, said, at, "rad/s"))
@@ -235,6 +241,8 @@ class LimitFinder:
             raise NotInLettersError("it is zero" if tf.is_reduced else "its formula is too long, and nested")
         if any(p.is_imaginary for p in tf.model.parameters):
             raise NotInLettersError("loss factors hold on s = j*omega alone")
+        if self.end == ENDS[0] and self.laws and not any(self._end(x, {})[1] for x, _ in self.laws.values()):
+            return self._where_waves_stay()
         value, power = Factored.number(self._ring, tf.ratio.unit), Fraction(0)
         others: dict[Any, int] = {}
         factors = tf.ratio.factors
@@ -270,6 +278,26 @@ class LimitFinder:
         left = rf"{ratio_latex(tf)} &\overset{{s \to {mark}}}{{\sim}}"
         relation = ":".ljust(len(ENDS[1]) - len(self.end) + 2)
         return Row(name, relation, left, leading, words, amount, unit, own), front
+
+    def _where_waves_stay(self) -> tuple[Row, Powers]:
+        """Return the value at s = 0 of a function whose wavenumbers are not 0 there, as of a cooled fin."""
+        form = print_form(self.tf)
+        taken = {n.name for _, line in form.where for n in e.names(line)} | {*self._ring.names}
+        waves = {name: Name(f"{name}_0") for name, _ in form.where if f"{name}_0" not in taken}
+        try:
+            at_rest = {LAPLACE: number(0)} | waves
+            lines = {f"{name}_0": simplified(line, at_rest) for name, line in form.where if name in waves}
+            value = simplified(e.quotient(form.num, form.den), at_rest)
+        except ZeroDivisionError:
+            raise NotInLettersError("it has a pole at s = 0 beside waves") from None
+        whole = with_lines(value, lines)
+        if len(lines) < len(form.where) or e.is_number(value, 0):
+            raise NotInLettersError("it has a zero at s = 0 beside waves")
+        self._check(whole)
+        left, power = rf"{ratio_latex(self.tf)} &\overset{{s \to 0}}{{\sim}}", Fraction(0)
+        row = Row("s -> 0", ":".ljust(len(ENDS[1]) + 1), left, value, self._words(power))
+        row = row._replace(value=value_of(self.tf, whole), unit=self.tf.unit, power=power)
+        return row._replace(where=tuple(lines.items())), {value: Fraction(1)}
 
     def expanded(self, factor: fmpz_mpoly, count: int = 1) -> Factored:
         """Return a function with the same first terms of its power series in s, so many, as a factor."""
@@ -446,8 +474,13 @@ def definitions_of(tf: AnyTransferFunction) -> list[tuple[str, Expression]]:
 
 def opened(tf: AnyTransferFunction, expression: Expression) -> Expression:
     """Return an expression without the names that a model defines."""
-    for _ in (lines := definitions_of(tf)):
-        expression = e.substitute(expression, dict(lines))
+    return with_lines(expression, dict(definitions_of(tf)))
+
+
+def with_lines(expression: Expression, lines: Mapping[str, Expression]) -> Expression:
+    """Return an expression without the names of lines, which may use one another."""
+    for _ in lines:
+        expression = e.substitute(expression, lines)
     return expression
 
 

@@ -208,3 +208,33 @@ y = "w(l)"
 )
 def test_a_term_that_is_not_had_is_refused_with_its_reason(text: str, reason: str) -> None:
     assert reason in str(limits_of(text))
+
+
+FIN = """symflex = 1
+parameters = { k = "200 W/(m*K)", h = "40 W/(m^2*K)", P = "44 mm", A = "40 mm^2", L = "50 mm" }
+inputs = { Q = { unit = "W" } }
+outputs = { T_root = "T(0)" }
+definitions = { rho = "2700 kg/m^3", c = "900 J/(kg*K)" }
+[fields.T]
+domain = ["0", "L"]
+equation = "k*A*T'' - h*P*T = rho*c*A*s*T"
+conditions = ["-k*A*T'(0) = Q", "-k*T'(L) = h*T(L)"]
+"""
+
+
+def test_a_fin_that_is_cooled_along_its_length_has_a_static_gain():
+    """Incropera and DeWitt, Fundamentals of Heat and Mass Transfer, 1996, table 3.4, case A: q_f/theta_b."""
+    limits = symflex.loads(FIN).transfer_functions()[0].limits()
+    k, h, P, A, L = sympy.symbols("k h P A L", positive=True)
+    m = sympy.sqrt(h * P / (k * A))
+    ratio = (sympy.sinh(m * L) + h / (m * k) * sympy.cosh(m * L)) / (
+        sympy.cosh(m * L) + h / (m * k) * sympy.sinh(m * L)
+    )
+    found = limits.expr("s -> 0")
+    numbers = {"k": 200, "h": 40, "P": 44e-3, "A": 40e-6, "L": 50e-3}
+    wanted = (1 / (sympy.sqrt(h * P * k * A) * ratio)).subs(
+        {sympy.Symbol(n, positive=True): x for n, x in numbers.items()}
+    )
+    assert abs(found.subs({x: numbers[x.name] for x in found.free_symbols}) / wanted - 1) < 1e-12
+    assert limits.row("s -> 0").value == pytest.approx(13.2054270974, rel=1e-11)
+    assert "where gamma_0 = sqrt(h*P/(k*A))" in str(limits)
