@@ -21,7 +21,7 @@ from math import inf, isfinite
 
 from flint import acb, acb_series, arb, fmpz_mpoly
 
-from symflex.algebra import LAPLACE
+from symflex.algebra import LAPLACE, Factored
 from symflex.balls import Open, Value, at_centre, ball, branch, current_bits, precision
 from symflex.budget import spend
 from symflex.errors import ModelError
@@ -35,6 +35,7 @@ from symflex.roots.pole_zero_map import WITHOUT_END
 from symflex.transfer import BoundTransferFunction, TransferFunction
 from symflex.transfer.enclose import constant_tangent, enclosure, first_order
 from symflex.transfer.enclose_kernels import KernelValues
+from symflex.transfer.mirrored import with_image
 from symflex.transfer.of_model import derive_nameless
 
 BITS = 64  # precision of values on boxes, which are far wider
@@ -88,6 +89,11 @@ class CharacteristicFunction:
         if any(law.wavenumbers for law in tf.kernels.dispersions):
             nameless = derive_nameless(model, [(tf.output.name, tf.input.name)])[0].whole
         return cls(tf, tuple(names), values, nameless, are_positive=are_positive)
+
+    @property
+    def is_complex(self) -> bool:
+        """Whether coefficients are complex: factors are then those of the product with the mirror image."""
+        return self.tf.model.imaginary is not None
 
     @cached_property
     def factors(self) -> tuple[fmpz_mpoly, ...]:
@@ -227,7 +233,7 @@ class CharacteristicFunction:
         kernels = replace(kernels, plans=shared.plans, sums=shared.sums)
         if not along:
             return kernels
-        real = {n: enclosure(x) for n, x in self.values} | dict(bound.fixed)
+        real = {n: enclosure(x) for n, x in self.values if not x.is_imaginary} | dict(bound.fixed)
         tangents = {n: first_order(x(), int(n == along)) for n, x in real.items()}
         moving = {along: tangents[along]} | {
             c.generator: constant_tangent(c.expression, tangents)
@@ -455,6 +461,9 @@ def _factors(tf: TransferFunction, given: Sequence[fmpz_mpoly] | None = None) ->
     every = given
     if every is None:
         every = [*(f for f, e in tf.den.factors if e > 0), *(h.polynomial for h in tf.hidden)]
+    if tf.model.imaginary:  # what meets the axis below 0 has an image that meets it above
+        images = (with_image(Factored.polynomial(ring, each)).factors for each in every)
+        every = [f for factors in images for f, _ in factors]
     return tuple(f for f in every if len(f) > 1 or not any(f.degrees()[i] for i in alone))
 
 

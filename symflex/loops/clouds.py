@@ -22,6 +22,7 @@ from symflex.errors import BudgetError
 from symflex.loops.boxes import CharacteristicFunction, OpenBox
 from symflex.loops.over import with_values
 from symflex.loops.spread import middle_of, reach, spread_function
+from symflex.model.loss_factors import check_causal
 from symflex.print.text import INDENT, WIDTH, Passage, passages_text
 from symflex.roots.locate import locate
 from symflex.roots.region import Rectangle
@@ -84,6 +85,7 @@ def root_clouds(
     """Return where a map's poles and zeros may lie but at 0, of a function of numbers by its ``model``."""
     tf = bound.source
     valued = with_values(model or tf.model, dict(bound.values))
+    check_causal(valued, "a region for every combination")
     function, box, _ = spread_function(valued, share, (tf.output.name, tf.input.name))
     clouds: list[RootCloud] = []
     both: dict[Literal["pole", "zero"], Sequence[Root]] = {"pole": located.poles, "zero": located.zeros}

@@ -14,6 +14,7 @@ from symflex.loops import loop as loop_layer
 from symflex.loops.colocation import DynamicColocation, dynamic_colocation
 from symflex.loops.find import find_stable_gains
 from symflex.loops.gain_functions import Limits
+from symflex.loops.image import function_of, with_image, without_image
 from symflex.loops.locus import is_straight
 from symflex.loops.loop import Loop, pick_gain
 from symflex.loops.networks import AnyLoop, network_loop
@@ -66,7 +67,7 @@ def characteristic_loop(
     check_causal(prepared, what)
     for name in given:
         pick_gain(model.parameters, name)
-    is_large = is_large_network(model)
+    is_large = is_large_network(model) and not prepared.imaginary
     if is_large and (network := _of_network(model, parameter, given)) is not None:
         return network
     equations = assemble(prepared)
@@ -83,6 +84,7 @@ def characteristic_loop(
             return network
         message = f"'{gain}' occurs in several places of a network that is too large to be written out"
         raise loop_layer.no_loop("SF803", message, parameter) from error
+    tf = with_image(tf, what) if prepared.imaginary else tf
     return loop_layer.characteristic_loop(tf, parameter, given)
 
 
@@ -116,8 +118,12 @@ def stability(
     limits = gain_ends(given.limits, _gain_of(model, given.gain))
     radians = None if given.up_to is None else 2 * pi * highest_frequency(given.up_to)
     digits, what = given.digits or model.analysis.digits or 15, "stability of a loop"
-    check_causal(with_numbers(model, (given.gain, *(values or {}))), what)
+    numbers = with_numbers(model, (given.gain, *(values or {})))
+    check_causal(numbers, what)
     search = partial(find_stable_gains, limits=limits, digits=digits, up_to=radians)
+    if numbers.imaginary:
+        loop = characteristic_loop(model, given.gain, values, what)
+        return of_complex(model, given.gain, values, search(loop, has_loop_gain=False))
     quick = _of_equations(model, given.gain, dict(values or {}), search)
     if quick is not None and quick.certified and not given.peaks:
         return quick
@@ -137,11 +143,22 @@ def stability(
     return written if quick is None or written.certified else quick
 
 
+def of_complex(
+    model: Model, name: str, values: Mapping[str, Given] | None, found: StabilityMap
+) -> StabilityMap:
+    """Return stable values that were found for a model with complex coefficients times its mirror image."""
+    stated = [pick_gain(model.parameters, each) for each in values or {} if each != name]
+    known = dict(read_values(tuple(stated), {p.name: (values or {})[p.name] for p in stated}))
+    prepared = with_numbers(model, (name,), known, in_kernels=True)
+    tf = _seeing(prepared, model.transfer_functions, pick_gain(model.parameters, name))
+    return without_image(found, function_of(prepared, tf, name))
+
+
 def _of_equations(
     model: Model, gain: str, given: Mapping[str, Given], search: Callable[[AnyLoop], StabilityMap]
 ) -> StabilityMap | None:
     """Return what a search finds of a network of two or three members, whose formula may take minutes."""
-    if not is_large_network(model, CODE_PRODUCTS) or is_large_network(model):
+    if not is_large_network(model, CODE_PRODUCTS) or is_large_network(model) or model.imaginary:
         return None
     network = _of_network(model, _gain_of(model, gain), given)
     with suppress(UncertifiedError):
@@ -169,6 +186,8 @@ def of_rational(
         if isinstance(loop, Loop) and (loop.functions is not None or not (has_pairs or _is_quick(loop))):
             return found
         written = search(loop)
+        if with_numbers(model, (name,)).imaginary:
+            return of_complex(model, name, None, written)
     except (ModelError, UncertifiedError, BudgetError):
         spend()  # the time may be over
         return found

@@ -27,6 +27,7 @@ from symflex.expressions import names_among
 from symflex.loops.boxes import BITS, Box, CharacteristicFunction, Ends, OpenBox
 from symflex.loops.chart import StabilityChart, count_at, find_chart
 from symflex.loops.find import gain_margins
+from symflex.loops.image import with_image, without_image
 from symflex.loops.loop import pick_gain
 from symflex.loops.of_model import of_rational
 from symflex.loops.stability_map import BOXES, Boundary, Crossing, GainInterval, PoleCount, StabilityMap
@@ -85,6 +86,7 @@ def stability_over(
         undecided = float(share_of(given.resolve, "--resolve"))
         return find_chart(function, limits, nominal, parameters, undecided)
     halved = find_intervals(function, limits[0], digits, parameters[0], nominal[0])
+    halved = without_image(halved, function) if function.is_complex else halved
     # Parts that boxes decide are proved for all poles; along the axis they may be counted up to a frequency.
     if halved.certified or (halved.intervals and halved.verdict.word != "unknown"):
         return halved
@@ -121,6 +123,8 @@ def characteristic(
     if pair is None:
         prepared = observed(prepared, seen[0])
     (tf,) = derive_all(prepared, [seen])
+    if prepared.imaginary:
+        with_image(tf.whole, "stability over a parameter")  # refused where there is none
     are_positive = all(low >= 0 for low, _ in ranges)
     return CharacteristicFunction.of(prepared, tf.whole, names, are_positive=are_positive)
 
@@ -302,7 +306,8 @@ def _boundaries(
     for (before, count), (after, other) in pairwise(counted):
         own = [gap for gap in gaps if before[1] <= gap.box[0][0] < after[0]]
         place = ball(before[1]).union(ball(after[0]))
-        is_real = (count.right - other.right) % 2 == 1  # others come in pairs
+        # Others come in pairs.
+        is_real = (count.right - other.right) % 2 == 1 and not function.is_complex
         unbounded = {gap.radius for gap in own if not gap.is_bounded}
         is_open = any(before[1] <= gap.box[0][0] < after[0] for gap in wide) or bool(unbounded - {VANISHES})
         if count == other and not is_open:

@@ -36,6 +36,13 @@ WITH_ROOTS = (
 """What is available with roots of s."""
 WITH_LOSSES = ("a sensitivity", "a mode shape", "a deflection", "an explanation of zeros")
 """What is available with loss factors and complex coefficients, as it asks the equations at a root alone."""
+WITH_COMPLEX = (
+    "stability of a loop",
+    "stability over a parameter",
+    "a value at another s",
+    "a response at omega <= 0",
+)
+"""What is available with complex coefficients beside it: they hold at every s."""
 LOSSY = ("k", "E", "G", "EI", "EA", "GJ", "kappaGA")  # values of elements that their loss factor multiplies
 
 
@@ -106,10 +113,14 @@ def has_loss_factors(model: Model) -> bool:
     stiff = [e for use in model.elements for _, e in use.all_values]
     stiff += [e for f in model.fields for e in (*f.equations, *f.conditions)]
     parts = [n for e in stiff for n in nodes(e) if isinstance(n, Product) and unit in n.factors]
-    if any(names_among(e, held) for e in stiff) and not any(Name(LAPLACE) in names(p) for p in parts):
-        return True
     sums = [n.terms for _, e in model.expressions() for n in nodes(e) if isinstance(n, Sum)]
-    return any(len(t) == 2 and number(1) in t and any(unit in names(x) for x in t) for t in sums)  # noqa: PLR2004
+    # In axes that turn s becomes s - j*Omega.
+    turns = any(Name(LAPLACE) in t and any(unit in names(x) for x in t) for t in sums)
+    is_beside_s = turns or any(Name(LAPLACE) in names(p) for p in parts)
+    if any(names_among(e, held) for e in stiff) and not is_beside_s:
+        return True
+    pairs = (t for t in sums if len(t) == 2 and number(1) in t)  # noqa: PLR2004 (1 + j*eta)
+    return any(unit in names(x) and Name(LAPLACE) not in names(x) for t in pairs for x in t)
 
 
 def check_causal(model: object, what: str) -> None:
@@ -119,17 +130,18 @@ def check_causal(model: object, what: str) -> None:
         hint = "formulas, frequency responses, responses in time, poles, zeros, stable gains and code are"
         raise ModelError(Diagnostic("SF910", message, None, hint))
     unit = getattr(model, "imaginary", None)
-    if unit is None or what in WITH_LOSSES:
+    is_lossy = unit is not None and has_loss_factors(cast("Model", model))
+    if unit is None or what in WITH_LOSSES or (what in WITH_COMPLEX and not is_lossy):
         return
     message = f"{what} is not available with loss factors (j): these hold only on s = j*omega, omega > 0"
     hint = (
         "formulas, frequency responses, modes (roots), their shapes and sensitivities, and numpy code are "
         "available; a damper or eta in seconds holds at every s"
     )
-    if not has_loss_factors(cast("Model", model)):
+    if not is_lossy:
         message = f"{what} is not available with complex coefficients (j)"
         hint = (
-            "formulas, frequency responses, roots and numpy code are available; "
+            "formulas, frequency responses, roots, stability and numpy code are available; "
             "if the model is real, complex values must come in conjugate pairs"
         )
     raise ModelError(Diagnostic("SF251", message, unit.span, hint))

@@ -74,16 +74,15 @@ def one_of_each_pair(roots: Sequence[Root]) -> list[PrintedRoot]:
     from symflex.balls import opposite  # imports numpy
 
     lower = [r for r in roots if r.im < 0]
-    entries = []
-    for root in roots:
-        if root.im < 0:
-            continue
+    pairs: set[int] = set()  # where upper members of pairs stand
+    for i, root in enumerate(roots):
         image = opposite(root.im)
         near = (r for r in lower if root.im > 0 and r.im.overlaps(image) and r.re.overlaps(root.re))
         if (partner := next(near, None)) is not None:
             lower.remove(partner)
-        entries.append(PrintedRoot(root, partner is not None))
-    return entries + [PrintedRoot(root, is_pair=False) for root in lower]
+            pairs.add(i)
+    alone = set(map(id, lower))
+    return [PrintedRoot(r, i in pairs) for i, r in enumerate(roots) if not r.im < 0 or id(r) in alone]
 
 
 def _alone(value: arb, digits: int, *, trimmed: bool = False) -> str:

@@ -13,7 +13,7 @@ from symflex.algebra import Factored
 from symflex.budget import Budget, entered_budget
 from symflex.equations import Equations
 from symflex.equations.elimination import free_at_rest
-from symflex.errors import BudgetError, Diagnostic, SymflexError
+from symflex.errors import BudgetError, Diagnostic, SymflexError, UncertifiedError
 from symflex.model import Model, with_numbers
 from symflex.model.loss_factors import check_causal, has_loss_factors
 from symflex.model.model import IMAGINARY
@@ -31,7 +31,7 @@ from symflex.roots.distributed.side import Side
 from symflex.roots.engines import LOSSLESS, POLYNOMIAL
 from symflex.roots.exact_zeros import is_shared_exactly
 from symflex.roots.functions.simplified import without_lengths_of_zero
-from symflex.roots.loss_modes import NO_STABILITY, check_searched, locate_lossy
+from symflex.roots.loss_modes import NO_STABILITY, OwnRoots, locate_lossy
 from symflex.roots.passivity import EnergyProof, energy_proof
 from symflex.roots.plane.search import HIGHEST
 from symflex.roots.pole_zero_map import (
@@ -194,7 +194,13 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int) -> Po
     pair = (source.output.name, source.input.name)
     if not model.is_distributed:
         return locate(of_numbers(bound), region, digits)
-    check_searched(bound)
+    if model.imaginary and not has_loss_factors(model):
+        expanded = derive_if_small(model, pair)
+        if expanded is None:
+            message = f"poles and zeros of {bound.name} are not searched: its coefficients are complex"
+            hint = "write real equations, of both planes or axes; or plot its frequency response (plot bode)"
+            raise UncertifiedError(Diagnostic("SF404", message, None, hint))
+        return locate(expanded, region, digits)
     where, is_default = _region_of(bound, region)
     energy = energy_proof(source.model, bound.values, source.output)
     located = locate_in_network(
@@ -244,13 +250,15 @@ def locate_distributed(
     *,
     with_zeros: bool = True,
     judged: PoleZeroMap | None = None,
+    own: OwnRoots | None = None,
 ) -> PoleZeroMap:
     """Find the poles and zeros of a transfer function with kernels, to so many significant digits, proved.
 
     Roots that mirror each other count as one mode. What is certified is returned when the budget is exceeded.
+    Of a function times its mirror image those are kept that are its ``own``.
     """
     where, is_default = _region_of(bound, region)
-    searched = _Searched(bound, where, digits, with_zeros=with_zeros)
+    searched = _Searched(bound, where, digits, with_zeros=with_zeros, own=own)
     reason, code = None, None
     try:
         searched.find()
@@ -274,16 +282,17 @@ def locate_distributed(
     except BudgetError as error:
         with Budget().entered():
             verdict, right, hidden = searched.judged(error.diagnostics[0].message, judged, is_over=True)
-    poles, zeros, known = searched.chosen()
-    beyond = in_order(right_beyond(hidden, known))
+    poles, zeros, known = map(searched.owned, searched.chosen(), range(3))
+    shown_hidden = [replace(h, root=r) for h in searched.hidden for r in searched.owned([h.root], 2)]
+    beyond = in_order(right_beyond(searched.owned(hidden, 2), known))
     located = PoleZeroMap.of(
         bound.name,
         where,
         digits,
         ", ".join(sorted({side.engine for side in searched.sides if not side.is_finite})) or POLYNOMIAL,
-        (poles, zeros, (*searched.hidden, *map(HiddenRoot, beyond))),
+        (poles, zeros, (*shown_hidden, *map(HiddenRoot, beyond))),
         verdict,
-        growing=right_beyond(right, known),
+        growing=right_beyond(searched.owned(right, 0), known),
         missing=sum(side.missing for side in searched.sides),
         reasons=[reason],
         code=code,
@@ -297,9 +306,15 @@ class _Searched:
     """Numerator, denominator and what cancelled between them, searched in a region."""
 
     def __init__(
-        self, bound: BoundTransferFunction, region: Region, digits: int, *, with_zeros: bool = True
+        self,
+        bound: BoundTransferFunction,
+        region: Region,
+        digits: int,
+        *,
+        with_zeros: bool = True,
+        own: OwnRoots | None = None,
     ) -> None:
-        self.bound, self.region = bound, region
+        self.bound, self.region, self._own = bound, region, own
         self._side, self._with_zeros = partial(Side, bound, digits=digits), with_zeros
         match region:
             case Modes(count) | Mode(count):
@@ -481,9 +496,16 @@ class _Searched:
         seen = [*chain(*sides[:-1]), *(h.root for h in degenerate if not h.is_proved)]
         # Where wavenumbers vanish, a factor may have a root that is no pole: s itself tells how many are.
         at_rest = root_at_zero(product.exponent_of(bound.ratio.ring.context.gen(0)))
-        unseen = [*(r for r in sides[-1] if not r.is_zero), *at_rest]
+        unseen = self.owned([*(r for r in sides[-1] if not r.is_zero), *at_rest], 2)
         ends = (is_endless, bool(gaps[-1].unproved) and not proof)
-        return judge(seen, unsure, proof, unseen, ends), sides[0] if poles else (), sides[-1]
+        return judge(self.owned(seen, 0), unsure, proof, unseen, ends), sides[0] if poles else (), sides[-1]
+
+    def owned(self, roots: Sequence[Root], place: int) -> list[Root]:
+        """Return which roots of denominator (0), numerator (1) or what cancelled (2) are the function's."""
+        if self._own is None:
+            return list(roots)
+        bound = self._own.bound
+        return self._own(roots, (bound.den, bound.num, cancelled(bound))[place])
 
     def _reached(self, side: Side) -> float:
         """Return up to which abs(s) all roots of a side are known [rad/s]."""

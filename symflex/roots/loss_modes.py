@@ -6,30 +6,31 @@ Output: a :class:`~symflex.roots.PoleZeroMap` of the roots with im s >= 0, as j 
     m s^2 + k (1 + j eta):  s^2 = -omega_r^2 (1 + j eta_r),  omega_r = sqrt(k/m),  eta_r = eta
 
 A polynomial f = g + j h with real g and h has the roots of ``g^2 + h^2 = f(s) conj(f)(s)`` at which f
-vanishes; g and h being coprime, conj(f) does not. A function with kernels is searched in the upper
-half-plane like any other, but for its mirror images: with j among its coefficients it has none.
+vanishes; g and h being coprime, conj(f) does not. A function with kernels and complex coefficients is told
+from its image in the same way. One with loss factors is searched in the upper half-plane like any other, but
+for its mirror images: with j among its coefficients it has none.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 
 from flint import acb, fmpz_mpoly
 
-from symflex.algebra import by_powers, degree_in, summed, terms_of
-from symflex.balls import precision
+from symflex.algebra import Factored, degree_in, summed, terms_of
+from symflex.balls import at_centre, precision
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.model.loss_factors import has_loss_factors
-from symflex.model.model import IMAGINARY
 from symflex.roots.engines import POLYNOMIAL
 from symflex.roots.pole_zero_map import Certificate, HiddenRoot, PoleZeroMap, StabilityVerdict, chosen, judge
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.problem import cancelled, problem_of
 from symflex.roots.region import Everything, Region
 from symflex.roots.root import LossyRoot, Root
-from symflex.transfer import AnyBoundFunction, BoundTransferFunction
+from symflex.transfer import BoundTransferFunction
+from symflex.transfer.mirrored import mirrored, real_parts
 
 NO_STABILITY: Final = StabilityVerdict(
     "unknown",
@@ -48,8 +49,9 @@ def locate_lossy(
 ) -> PoleZeroMap:
     """Find poles and zeros of a function with j, by ``locate`` if it has kernels; else SF402."""
     is_lossy = has_loss_factors(bound.source.model)
+    if not bound.is_rational and not is_lossy:
+        return _locate_both(bound, region, digits, locate)
     if not bound.is_rational:
-        check_searched(bound)
         located = locate(replace(bound, is_of_model=False), region, digits, judged=UNJUDGED)
         shown = _upper(located.poles), _upper(located.zeros)
         hidden = [replace(h, root=LossyRoot.of(h.root)) for h in located.hidden if not h.root.im < 0]
@@ -73,18 +75,56 @@ def locate_lossy(
         sides = [_upper(roots) for roots in sides]
     else:
         verdict = judge(sides[0], hidden=sides[2])
-        verdict = replace(verdict, reason="; ".join(filter(None, (verdict.reason, COMPLEX))))
+        verdict = replace(verdict, reason=_with_reason(verdict.reason))
     poles, zeros, cancels = (chosen(roots, region) for roots in sides)
     all_shown = (poles, zeros, [HiddenRoot(root) for root in cancels])
     return PoleZeroMap.of(bound.name, region, digits, POLYNOMIAL, all_shown, verdict, is_infinite=False)
 
 
-def check_searched(bound: AnyBoundFunction) -> None:
-    """Raise UncertifiedError, SF404, for waves or delays with complex coefficients, no loss factors."""
-    if bound.source.model.imaginary and not has_loss_factors(bound.source.model):
-        message = f"poles and zeros of {bound.name} are not searched: its coefficients are complex"
-        hint = "its frequency response shows them (plot bode)"
+def _locate_both(
+    bound: BoundTransferFunction, region: Region, digits: int, locate: Callable[..., PoleZeroMap]
+) -> PoleZeroMap:
+    """Find poles and zeros of a function with complex coefficients among those of it and its mirror image."""
+    product = mirrored(bound)
+    if product is None:
+        message = f"poles and zeros of {bound.name} are not searched: its waves have complex coefficients"
+        hint = "write real equations, of both planes or axes; or plot its frequency response (plot bode)"
         raise UncertifiedError(Diagnostic("SF404", message, None, hint))
+    located = locate(product, region, digits, own=OwnRoots(bound))
+    verdict = located.verdict
+    return replace(located, verdict=replace(verdict, reason=_with_reason(verdict.reason)))
+
+
+def _with_reason(reason: str) -> str:
+    return "; ".join(filter(None, (reason, COMPLEX)))
+
+
+@dataclass(frozen=True, slots=True)
+class OwnRoots:
+    """Tells the roots of a function with complex coefficients from those of its mirror image."""
+
+    bound: BoundTransferFunction
+
+    def __call__(self, roots: Iterable[Root], part: Factored) -> list[Root]:
+        """Return those of one part among roots of it times its image; SF404 where that is not decided."""
+        own: list[Root] = []
+        for root in roots:
+            count, rest = root.multiplicity, 0
+            # Off the real axis a root belongs to one of both, or to a factor that is real, twice then.
+            here, there = (True, True) if root.is_real else self._vanishes(part, root)
+            if here and there:
+                count, rest = divmod(count, 2)
+            if rest or not (here or there):
+                raise _not_told(self.bound)
+            own += [replace(root, multiplicity=count)] if here else []
+        return own
+
+    def _vanishes(self, part: Factored, root: Root) -> tuple[bool, bool]:
+        """Tell whether a part may vanish at a root, and at its mirror image."""
+        with precision(root.working_bits()):
+            s, kernels = root.enclosure(), self.bound.kernel_values()
+            values = [at_centre(kernels.value(part, kernels.at(x))) for x in (s, s.conjugate())]
+            return bool(values[0].contains(0)), bool(values[1].contains(0))
 
 
 def complex_roots(
@@ -92,12 +132,10 @@ def complex_roots(
 ) -> list[Root]:
     """Return the roots of polynomials in s and j."""
     ring, roots = bound.ratio.ring, list[Root]()
-    place = ring.index[IMAGINARY] if IMAGINARY in ring.index else None
     for factor, exponent in factors:
         if not degree_in(factor, 0):
             continue
-        parts = by_powers(ring, factor, place) if place is not None else {0: factor}
-        g, h = (parts.get(n, ring.constant(0)) for n in (0, 1))
+        g, h = real_parts(ring, factor)
         common = g.gcd(h)
         real = [(common, abs(exponent))] if degree_in(common, 0) else []
         roots += find_polynomial_roots(problem_of(bound, real), digits)
@@ -117,9 +155,13 @@ def _apart(
         sides = [_vanishes(bound, g, h, root) for root in roots]
         if None not in sides:
             return [r if side else replace(r, im=-r.im) for r, side in zip(roots, sides, strict=True)]
+    raise _not_told(bound)
+
+
+def _not_told(bound: BoundTransferFunction) -> UncertifiedError:
     message = f"a root of {bound.name} cannot be told from the mirror image of another"
-    raise UncertifiedError(
-        Diagnostic("SF404", message, None, "loss factors as small as this may be left out")
+    return UncertifiedError(
+        Diagnostic("SF404", message, None, "imaginary parts of coefficients as small as this may be left out")
     )
 
 
