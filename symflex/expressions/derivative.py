@@ -8,8 +8,9 @@ Input: a tree, and a leaf of it. Output: a tree, kept short by the constructors 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from math import nan
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from math import nan, prod
 from typing import Final
 
 from symflex.expressions.nodes import (
@@ -183,9 +184,35 @@ def simplified(expression: Expression, values: Mapping[str, Expression]) -> Expr
         call=called,
         negative=negative,
         total=sum_of,
-        product=lambda factors: product_of(map(_sign_first, factors)),
-        quotient=quotient,
+        product=lambda factors: _gathered([_sign_first(f) for f in factors]),
+        quotient=lambda above, below: _gathered([quotient(above, below)]),
     )
+
+
+def _gathered(factors: Sequence[Expression]) -> Expression:
+    """Return a product with one number and each factor once: ``2*(m/2)*l*l`` is ``m*l^2``."""
+    parts = list[Expression]()
+    for factor in factors:
+        whole = factor.operand if isinstance(factor, Negative) else factor
+        if isinstance(whole, Quotient) and isinstance(whole.denominator, Number):
+            parts += [
+                number(1 if whole is factor else -1),
+                number(1 / whole.denominator.value),
+                whole.numerator,
+            ]
+        else:
+            parts.append(factor)
+    flat = [f for p in parts for f in (p.factors if isinstance(p, Product) else (p,))]
+    numbers = [f.value for f in flat if isinstance(f, Number) and f.value != 1]
+    if len(numbers) > 1 and prod(numbers).denominator == 1:
+        factors = flat
+    whole = product_of(factors)
+    product = whole.operand if isinstance(whole, Negative) else whole
+    if not isinstance(product, Product) or len({*product.factors}) == len(product.factors):
+        return whole
+    times = Counter(product.factors)
+    once = product_of(power(f, n) if n > 1 else f for f, n in times.items())
+    return once if product is whole else negative(once)
 
 
 def _sign_first(factor: Expression) -> Expression:

@@ -8,6 +8,7 @@ import sympy
 from sympy.physics.mechanics import LagrangesMethod, dynamicsymbols
 
 from symflex import Model, loads
+from symflex.expressions import format_expression
 from tests.unit.refusals import refusal
 
 # fmt: off
@@ -533,3 +534,20 @@ def test_a_rate_is_solved_for_by_its_name():
     )
     (speed,) = model.resolved.operating_point.found
     assert float(speed.value) == pytest.approx(0.3 * 60 / 0.5 / (0.3**2 / 0.5 + 0.02))
+
+
+def test_halves_and_doubles_of_energies_cancel_in_print():
+    model = Model(
+        parameters={"m": 1, "l": 2, "J": 3, "g": 10},
+        energy={
+            "coordinates": ["q"],
+            "kinetic": "J/2*q'^2 + m/2*((l*sin(q))'^2 + (l*cos(q))'^2) + m*(l*q')^2/2",
+            "potential": "-m*g*l*cos(q) + 3*m*g*q^2/2",
+            "forces": {"q": "u"},
+        },
+        inputs={"u": {}},
+        outputs={"Q": "q"},
+    )
+    ((mass,),), _, ((stiffness,),) = model.resolved.operating_point.matrices
+    shown = [format_expression(entry) for entry in (mass, stiffness)]
+    assert shown == ["J + 2*m*l^2", "m*g*l + 3*m*g"]  # J + m l^2 + m l^2 by hand
