@@ -162,8 +162,8 @@ def _blocks(
         hidden = []
         if tf.is_reduced:
             writer = Writer(form_labels(tf, named))
-            pairs = zip(tf.hidden, factors, strict=True)
-            hidden = [_hidden_mode(h, e, tf, writer, width_mm) for h, (e, _) in pairs]
+            pairs = zip(tf.whole.hidden, factors, strict=True)
+            hidden = [_hidden_mode(h, e, tf.whole, writer, width_mm) for h, (e, _) in pairs]
         of_tf = [located for located in maps if located.tf == tf.name]
         if hidden and not of_tf:
             yield _Block("\n".join((r"\noindent", *hidden)) + "\n\n")

@@ -77,6 +77,23 @@ def test_names_of_files_are_letters_whatever_the_function_is_called(model):
     assert len({name.lower() for name in files}) == len(copies) + 2
 
 
+def test_hidden_factors_with_a_delay_or_waves_are_named_where_the_function_has_neither():
+    late = 'y = "(1 - 2*exp(-s*T))/(s + 1)*u"\nu = "(r - y)/(1 - 2*exp(-s*T))"\n'
+    beside = 'a = { type = "mass", at = "y", m = 2 }\nb = { type = "rod", EA = 3, rhoA = 1, l = 1, '
+    beside += 'between = ["ground", "tip"] }\nc = { type = "mass", at = "tip", m = 1 }\n'
+    for text, said in [
+        (f"parameters.T = 1\ninputs.r = {{}}\noutputs.Y = 'y'\n[signals]\n{late}", "{-T s} - 1$ cancels"),
+        (
+            f"inputs.F = {{ force = 'y' }}\noutputs.Y = 'y'\n[elements]\n{beside}",
+            r"\cosh(q)$ cancels",
+        ),
+    ]:
+        model = pipeline.loads(f"symflex = 1\n{text}")
+        (tf,) = pipeline.derive_all(model)
+        whole = "".join(latex_files(model, [tf], [print_form(tf)]).values())
+        assert said in whole, whole
+
+
 def test_a_map_that_cannot_be_found_is_told_and_left_out(model, monkeypatch):
     from symflex.codegen import latex
     from symflex.errors import Diagnostic, UncertifiedError
