@@ -429,6 +429,7 @@ class PoleZeroMap:
             "zeros": [_root_to_json(root, self.digits) for root in self.zeros],
             "right_half_plane": [_root_to_json(root, self.digits) for root in self.unstable],
             "hidden": [{**_root_to_json(h.root, self.digits), "cause": h.cause} for h in self.hidden],
+            "hides_more": self.hides_more,
             "excluded": [exclusion.to_json_dict() for exclusion in self.excluded],
             "certificate": {
                 "engine": certificate.engine,

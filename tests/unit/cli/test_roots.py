@@ -28,7 +28,7 @@ def test_json_has_the_documented_keys(shell):
     document = done.json
     assert set(document) == {
         "schema", "tf", "region", "certified", "stability", "poles", "zeros", "right_half_plane", "hidden",
-        "excluded", "certificate",
+        "hides_more", "excluded", "certificate",
     }  # fmt: skip
     assert document["schema"] == "symflex.roots/1"
     assert set(document["certificate"]) == {"engine", "counted", "found", "reason", "budget_exceeded"}

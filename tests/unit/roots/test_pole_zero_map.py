@@ -91,6 +91,7 @@ def test_all_of_a_map_is_in_its_data():
         "x/F", Everything(), real(-1), real(-2), (), certificate, 5, (hole,), unstable=real(4)
     ).to_json_dict()
     assert data["excluded"] == [{"re": -2.0, "im": 0.0, "radius": 0.5, "reason": "poles accumulate"}]
+    assert data["hides_more"] is False
     assert data["certificate"] == {
         "engine": "e",
         "counted": 3,
