@@ -78,6 +78,7 @@ class CharacteristicFunction:
     nameless: TransferFunction | None = None  # without names for kernels, entire at s = 0; None if no waves
     chosen: tuple[fmpz_mpoly, ...] | None = None  # factors in place of those of all poles
     are_positive: bool = False  # no parameter has a negative value in a box
+    is_modal: bool = True  # values are sums over the roots of dispersions, which are sharp far from s = 0
 
     @classmethod
     def of(
@@ -104,7 +105,7 @@ class CharacteristicFunction:
         hidden = [h.polynomial for h in tf.hidden]
         moving = {name: _moving(tf, name) for name in self.names}
         moved = []
-        for f in _factors(tf):
+        for f in factors_of(tf):
             own = tuple(name for name, places in moving.items() if any(f.degrees()[i] for i in places))
             # Hidden poles that energy keeps out of the right half-plane do not change the verdict.
             if own and not (f in hidden and self._rests_with(own)):
@@ -127,7 +128,9 @@ class CharacteristicFunction:
     def of_roots(self, kind: str) -> CharacteristicFunction:
         """Return the factors of the poles, or of the zeros, that the transfer function has."""
         value = self.tf.den if kind == "pole" else self.tf.num
-        return replace(self, chosen=_factors(self.tf, [f for f, e in value.factors if e > 0]), nameless=None)
+        return replace(
+            self, chosen=factors_of(self.tf, [f for f, e in value.factors if e > 0]), nameless=None
+        )
 
     @cached_property
     def _entire(self) -> tuple[fmpz_mpoly, ...]:
@@ -149,7 +152,7 @@ class CharacteristicFunction:
 
     def depends_on(self, name: str) -> bool:
         """Tell whether a root depends on a parameter."""
-        return any(f.degrees()[i] for f in _factors(self.tf) for i in _moving(self.tf, name))
+        return any(f.degrees()[i] for f in factors_of(self.tf) for i in _moving(self.tf, name))
 
     def whole(self, box: Box) -> OpenBox:
         """Return a box about which nothing is known yet."""
@@ -162,7 +165,7 @@ class CharacteristicFunction:
         return OpenBox(box, radius, tuple(pieces for _ in self.factors))
 
     def _end(self, box: Box) -> float | str:
-        bound = self._bound(self.tf, box)
+        bound = self.bound_in(self.tf, box)
         try:
             ends = [right_tail(bound, (f,), (acb(1),), LOWEST) for f in self.factors]
         except ModelError as error:
@@ -227,10 +230,10 @@ class CharacteristicFunction:
 
     def kernels(self, tf: TransferFunction, box: Box, along: str = "") -> KernelValues:
         """Return the evaluator for parameters anywhere in a box, to first order in one of them."""
-        bound = self._bound(tf, box)
+        bound = self.bound_in(tf, box)
         kernels = bound.kernel_values()
         shared = self._shared.setdefault(id(tf), kernels)
-        kernels = replace(kernels, plans=shared.plans, sums=shared.sums)
+        kernels = replace(kernels, plans=shared.plans, sums=shared.sums, is_modal=self.is_modal)
         if not along:
             return kernels
         real = {n: enclosure(x) for n, x in self.values if not x.is_imaginary} | dict(bound.fixed)
@@ -257,7 +260,8 @@ class CharacteristicFunction:
     def _summed(self) -> dict[int, Summed | None]:
         return {}
 
-    def _bound(self, tf: TransferFunction, box: Box) -> BoundTransferFunction:
+    def bound_in(self, tf: TransferFunction, box: Box) -> BoundTransferFunction:
+        """Return a transfer function whose parameters lie anywhere in a box."""
         fixed = tuple((name, _enclosed(ends)) for name, ends in zip(self.names, box, strict=True))
         return BoundTransferFunction(tf, self.values, tf.ratio, tf.hidden, tf.kernels, fixed=fixed)
 
@@ -452,7 +456,8 @@ def _moving(tf: TransferFunction, name: str) -> set[int]:
     return {ring.index[n] for n in (*own, *waves, *(k.generator for k in kernels))}
 
 
-def _factors(tf: TransferFunction, given: Sequence[fmpz_mpoly] | None = None) -> tuple[fmpz_mpoly, ...]:
+def factors_of(tf: TransferFunction, given: Sequence[fmpz_mpoly] | None = None) -> tuple[fmpz_mpoly, ...]:
+    """Return all factors of the characteristic function, or those given, without powers of s alone."""
     ring = tf.ratio.ring
     alone = {
         ring.index[LAPLACE],

@@ -167,7 +167,7 @@ def _of_equations(
 
 
 def of_rational(
-    model: Model, name: str, limits: Limits, digits: int, *, has_pairs: bool
+    model: Model, name: str, limits: Limits, digits: int, up_to: float | None, *, has_pairs: bool
 ) -> StabilityMap | None:
     """Return for which values of a parameter a model is stable, if it enters rationally; None if not.
 
@@ -176,7 +176,7 @@ def of_rational(
     """
     if model.data_end is not None:  # gains are judged up to there, parameters everywhere
         return None
-    search = partial(find_stable_gains, limits=limits, digits=digits, has_loop_gain=False)
+    search = partial(find_stable_gains, limits=limits, digits=digits, up_to=up_to, has_loop_gain=False)
     found: StabilityMap | None = None
     try:
         found = _of_equations(model, name, {}, search)

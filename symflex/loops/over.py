@@ -17,7 +17,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from itertools import pairwise
+from functools import partial
+from itertools import groupby, pairwise
+from math import pi
 
 from flint import acb, arb
 
@@ -31,10 +33,11 @@ from symflex.loops.image import with_image, without_image
 from symflex.loops.loop import pick_gain
 from symflex.loops.of_model import of_rational
 from symflex.loops.stability_map import BOXES, Boundary, Crossing, GainInterval, PoleCount, StabilityMap
+from symflex.loops.up_to import OpenPart, PolesUpTo
 from symflex.model import Model, ModelParameter, with_numbers
 from symflex.model.along import is_tapered
 from symflex.model.loss_factors import check_causal
-from symflex.options import StabilityOptions, gain_ends, share_of
+from symflex.options import StabilityOptions, gain_ends, highest_frequency, share_of
 from symflex.roots.distributed.far_out import VANISHES
 from symflex.roots.passivity import observed
 from symflex.transfer import Given
@@ -47,6 +50,7 @@ WIDER, WIDER_PART = 10, 2  # times of its value that a parameter, of signals or 
 SLIVER = 64  # parts as narrow as the digits, up to which what lies between two boundaries is theirs
 LEAST = 10**6  # part of the range to which values about zero are enclosed
 ABOUT = 4  # widths by which a gap is widened to each side to prove that one pair crosses in it
+MOST_PARTS = 200  # open parts side by side beyond which poles stay on the axis where two of them meet
 MOST_GAPS = 1000  # open parts side by side beyond which a pole touches the axis, or stays on it
 
 
@@ -62,9 +66,10 @@ def stability_over(
     names = tuple(given.over)
     if len(names) > 2 or len(set(names)) < len(names):  # noqa: PLR2004 (a chart has two axes)
         raise UsageError(Diagnostic("SF902", "give one or two parameters, each once: --over K --over T"))
-    if given.up_to is not None:
-        hint = "where poles have no end, ask for a gain: --gain K --up-to FREQUENCY"
-        raise UsageError(Diagnostic("SF902", "--up-to does not apply to --over", None, hint))
+    if given.up_to is not None and len(names) > 1:
+        hint = "ask for one parameter: --over P --up-to FREQUENCY"
+        raise UsageError(Diagnostic("SF902", "--up-to does not apply to a chart", None, hint))
+    up_to = None if given.up_to is None else 2 * pi * highest_frequency(given.up_to)
     model = with_values(model, values)
     parameters = [pick_gain(model.parameters, name) for name in names]
     if spare := [name for name, *_ in given.ranges if name not in names]:
@@ -74,7 +79,9 @@ def stability_over(
     limits = tuple(_limits(model, p, given) for p in parameters)
     nominal = [None if p.value is None or p.value.pi_power else p.value.rational for p in parameters]
     digits = given.digits or model.analysis.digits or 15
-    exact = of_rational(model, names[0], limits[0], digits, has_pairs=False) if len(names) == 1 else None
+    exact = (
+        of_rational(model, names[0], limits[0], digits, up_to, has_pairs=False) if len(names) == 1 else None
+    )
     if exact is not None and exact.certified:
         return exact.of_parameter
     function = characteristic(model, names, limits)
@@ -85,12 +92,16 @@ def stability_over(
     if len(names) > 1:
         undecided = float(share_of(given.resolve, "--resolve"))
         return find_chart(function, limits, nominal, parameters, undecided)
+    search = partial(find_intervals_up_to, function, limits[0], digits, parameters[0], nominal[0], up_to)
+    end = function.whole(limits).radius
+    if isinstance(end, str) and end != VANISHES and PolesUpTo.serves(function):
+        return exact.of_parameter if exact is not None and exact.intervals else search(end)
     halved = find_intervals(function, limits[0], digits, parameters[0], nominal[0])
     halved = without_image(halved, function) if function.is_complex else halved
     # Parts that boxes decide are proved for all poles; along the axis they may be counted up to a frequency.
     if halved.certified or (halved.intervals and halved.verdict.word != "unknown"):
         return halved
-    exact = exact or of_rational(model, names[0], limits[0], digits, has_pairs=True)
+    exact = exact or of_rational(model, names[0], limits[0], digits, up_to, has_pairs=True)
     return exact.of_parameter if exact is not None and exact.intervals else halved
 
 
@@ -217,6 +228,7 @@ def find_intervals(
         else:
             verdict, axis = count_at(function, ((part[0] + part[1]) / 2,))
             count = None if verdict.right is None else PoleCount(verdict.right, axis)
+            count = count or _counted_to_the_end(function, limits, part, bits)
             reasons += [verdict.reason] if count is None else []
         counted += [(part, count)] if count else []
     boundaries, intervals = _boundaries(function, counted, gaps, wide, limits, digits, reasons)
@@ -238,6 +250,91 @@ def find_intervals(
     if nominal is not None and (stability.verdict.word == "unknown" or function.tf.hidden):
         stability = replace(stability, at_nominal=count_at(function, (nominal,))[0])
     return replace(stability, gain_margins=gain_margins(stability))
+
+
+def _counted_to_the_end(
+    function: CharacteristicFunction, limits: Ends, part: Ends, bits: int
+) -> PoleCount | None:
+    """Return the poles in the middle of a part, by their bound and the argument principle, if proved."""
+    end = function.whole((limits,)).radius
+    if isinstance(end, str) or not PolesUpTo.serves(function):
+        return None
+    return PolesUpTo.of(function, limits, end, bits).count((part[0] + part[1]) / 2, Fraction(end))
+
+
+def find_intervals_up_to(
+    function: CharacteristicFunction,
+    limits: Ends,
+    digits: int,
+    parameter: ModelParameter,
+    nominal: Fraction | None,
+    up_to: float | None,
+    reason: str,
+) -> StabilityMap:
+    """Return the same of poles up to a frequency [rad/s], where others have no end for the reason given."""
+    poles = PolesUpTo.of(function, limits, up_to, bits_for_digits(digits) + BITS)
+    search = branch(
+        [poles.whole],
+        poles.narrowed,
+        lambda part: [] if _is_narrow(part.ends, limits, digits) else part.halves,
+        order="breadth",
+        until=lambda _, waiting: waiting > MOST_PARTS,
+        keeps=True,
+    )
+    narrow = len(search.undecided) - search.unseen - (search.over is not None)
+    gaps, wide = search.undecided[:narrow], search.undecided[narrow:]
+    reasons = [reason]
+    if search.over is not None:
+        reasons.append(search.over.message)
+    elif wide:
+        ends = f"{float(wide[0].ends[0]):.6g} and {float(wide[-1].ends[1]):.6g}"
+        reasons.append(f"it could not be decided whether poles leave the axis between {ends}")
+    counted, uncounted = _counted_up_to(poles, sorted(search.decided, key=lambda part: part.ends))
+    reasons += [f"poles could not be counted near {float(ends[0]):.6g}" for ends in uncounted]
+    radius = float(poles.radius)
+    boxes = [OpenBox((part.ends,), radius, poles.frequencies(part)) for part in gaps]
+    rest = [OpenBox((ends,), radius) for ends in (*(part.ends for part in wide), *uncounted)]
+    boundaries, intervals = _boundaries(function, counted, boxes, rest, limits, digits, reasons)
+    return StabilityMap(
+        parameter.name,
+        parameter.unit,
+        limits,
+        boundaries,
+        intervals,
+        nominal,
+        radius=radius,
+        is_complete=False,
+        reasons=tuple(dict.fromkeys(reasons)),
+        digits=digits,
+        method=BOXES,
+        is_gain=False,
+        tf=function.tf.name,
+        counted_in=parameter.counted_in,
+    )
+
+
+def _counted_up_to(poles: PolesUpTo, parts: Sequence[OpenPart]) -> tuple[list[Interval], list[Ends]]:
+    """Return parts that touch as one with the poles in it, and those in which they could not be counted.
+
+    Circles may differ. With a wider one more poles are on the axis; what all parts have there is counted.
+    """
+    counted, uncounted = list[Interval](), list[Ends]()
+    for circle, row in groupby(parts, key=lambda part: part.circle):
+        for ends in _joined([part.ends for part in row]):
+            count = None if circle is None else poles.count((ends[0] + ends[1]) / 2, circle)
+            if count is None:
+                uncounted.append(ends)
+                continue
+            before = counted[-1] if counted and counted[-1][0][1] == ends[0] else None
+            if before is None:
+                counted.append((ends, count))
+            elif before[1].right == count.right:
+                both = PoleCount(count.right, min(count.axis, before[1].axis))
+                counted[-1] = ((before[0][0], ends[1]), both)
+            else:  # poles passed the circle
+                uncounted.append((ends[0], ends[0]))
+                counted.append((ends, count))
+    return counted, uncounted
 
 
 def pair_that_crosses(

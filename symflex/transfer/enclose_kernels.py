@@ -46,6 +46,7 @@ class KernelValues:
     sums: ModalSums  # over the same ring
     plans: PolynomialMemo[EvaluationPlan]  # shared by all precisions
     matrices: VaryingMatrices | None = None  # of laws whose coefficients vary along x
+    is_modal: bool = True  # fundamental functions are sums over the roots of dispersions, if these are apart
 
     def at(
         self, s: Value, near: Mapping[str, Value] | None = None, root: Callable[[Value], Value] | None = None
@@ -102,7 +103,8 @@ class KernelValues:
     def _laws(self) -> tuple[tuple[int, Dispersion], ...]:
         """The dispersions with fundamental functions, and their positions."""
         used = {m.dispersion for m in self.sums.modes if not m.is_decay}
-        return tuple((n, law) for n, law in enumerate(self.table.dispersions) if law in used)
+        laws = enumerate(self.table.dispersions) if self.is_modal else ()
+        return tuple((n, law) for n, law in laws if law in used)
 
     def _roots(self, coefficients: Mapping[Dispersion, Sequence[Value]]) -> dict[str, Value]:
         """Return the roots of all dispersions that have fundamental functions; none if some nearly meet."""

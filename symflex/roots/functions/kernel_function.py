@@ -104,7 +104,6 @@ class KernelFunction:
         signs = [([_parity(f) for f, _ in v.factors], [e for _, e in v.factors]) for v in (*odd, *even)]
         return (
             len(odd) == len(decays)
-            and all(law.shift.is_zero or any(law.shift is x for x in odd) for law in laws)
             and all(_turned(f, places) in (f, -f) for f, _ in self.part.factors)
             and all(None not in parities for parities, _ in signs)
             and [sum((p or 0) * e for p, e in zip(*s, strict=True)) % 2 for s in signs]

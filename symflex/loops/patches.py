@@ -1,0 +1,142 @@
+"""An analytic function of s and one parameter on discs of both, as a polynomial with a bound on its error.
+
+Input: a function of s and a parameter p, complex numbers or balls. Output: a :class:`Patch`, which tells what
+the function does on smaller discs. Example: ``exp(s p)`` on abs(s) <= 1 and abs(p) <= 1 is
+``sum((s p)^k/k!)`` with k < 20, to 4e-19.
+
+Samples on circles give the coefficients. If abs(f) <= M on discs that are 1/q times as large, those left out,
+and those that samples do not tell from others, are at most M q^k (Cauchy 1831). Balls of wide discs say
+little of f, but enough of M.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cache
+from itertools import product
+from math import ceil, comb, inf, log
+
+import numpy as np
+import numpy.typing as npt
+from flint import acb, arb
+
+from symflex.balls import precision
+
+BITS = 64  # of samples and bounds
+RATIOS = (4, 8, 16, 32, 64, 128)  # by which discs are larger on which the function is bounded
+ACCURACY = 1e-5  # relative to the function's size: narrow parts are examined without patches
+MOST_SAMPLES = 500  # beyond which smaller discs take less
+ROOM = 1.01  # by which discs are larger than what lies in them
+RESOLVED = 20  # times the error of a patch that a bound is, if a smaller disc is worth it
+ULP = 2.0**-50  # far more than a double is off, relative to it
+ROUNDING = 1e-13  # far more than transforms and shifts lose, relative to the largest sample
+
+Function = Callable[[Sequence[acb], acb], list[acb]]  # its values at several s, for one parameter
+Coefficients = npt.NDArray[np.complex128]
+
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """What is known of a function on small discs of s and the parameter."""
+
+    may_vanish: bool
+    may_turn: bool  # its slope in s may vanish
+    by_part: float  # how far the parameter moves values in the middle of s
+    by_path: float  # how far s moves them
+
+    @property
+    def is_as_sharp_as_the_part(self) -> bool:
+        """Whether a shorter path would not be told from this one."""
+        return not self.by_part < inf or self.by_path < self.by_part
+
+
+@dataclass(frozen=True, eq=False)
+class Patch:
+    """A polynomial in ``(s - centre)/radius`` and ``(p - middle)/half``, next to a function."""
+
+    centre: complex
+    radius: float
+    middle: float
+    half: float
+    coefficients: Coefficients  # by powers of s, and of p
+    error: float  # where neither is larger than 1
+    slope_error: float  # of the derivative in the first
+
+    def on(self, s: complex, reach: float, p: float, off: float) -> tuple[Bound, bool]:
+        """Return what is known on discs about s and p, and whether smaller ones would tell more."""
+        off, reach = off + ULP * abs(p), reach + ULP * abs(s)  # as neither is exact
+        at_p = _shifted(self.coefficients.T, (p - self.middle) / self.half).T
+        sizes = np.abs(_shifted(at_p, (s - self.centre) / self.radius))
+        share, powers = reach / self.radius, np.arange(len(sizes))
+        sizes = sizes * (off / self.half) ** np.arange(sizes.shape[1])
+        by_s = sizes.sum(axis=1)
+        by_part, by_path = float(by_s[0] - sizes[0, 0]), float((by_s[1:] * share ** powers[1:]).sum())
+        by_slope = float((powers[1:] * by_s[1:] * share ** (powers[1:] - 1)).sum() - sizes[1, 0])
+        may_vanish = float(sizes[0, 0]) <= by_part + by_path + self.error
+        may_turn = float(sizes[1, 0]) <= by_slope + self.slope_error
+        is_rough = by_part + by_path > RESOLVED * self.error and by_slope > RESOLVED * self.slope_error
+        return Bound(may_vanish, may_turn, by_part, by_path), is_rough
+
+
+def patch(function: Function, centre: complex, radius: float, middle: float, half: float) -> Patch | None:
+    """Return a polynomial for a function that is analytic where it is finite; None where discs are too large.
+
+    >>> exponential = lambda points, p: [(s * p).exp() for s in points]
+    >>> one = patch(exponential, 1j, 0.5, 2.0, 0.5)
+    >>> one is not None and one.error < 1e-6 and not one.on(1j, 0.1, 2.0, 0.1)[0].may_vanish
+    True
+    """
+    with precision(BITS):
+        size = max(float(abs(x).upper()) for x in function(_circle(centre, radius, 4), acb(middle)))
+        best = MOST_SAMPLES + 1, 0, 0, inf, 0.0
+        for by_s, by_p in product(RATIOS, RATIOS):
+            ((most,),) = (function([_disc(centre, by_s * radius)], _disc(middle, by_p * half)),)
+            bound = float(most.abs_upper())
+            if not (0 < size < inf and bound < inf):
+                continue
+            room = max(log(bound) - log(size) - log(ACCURACY), 1.0)
+            rows, columns = ceil(room / log(by_s / 2)) + 1, ceil(room / log(by_p)) + 1
+            # Twice as large a disc of s bounds slopes.
+            tail = (2 / by_s) ** rows + (1 / by_p) ** columns
+            error = 2 * bound * tail / ((1 - 2 / by_s) * (1 - 1 / by_p))
+            best = min(best, (rows * columns, rows, columns, error, size))
+        samples, rows, columns, error, _ = best
+        if samples > MOST_SAMPLES:
+            return None
+        points = _circle(centre, radius, rows)
+        table = [function(points, p) for p in _circle(middle, half, columns)]
+        blur = max(float((x.real.rad() + x.imag.rad()).upper()) for row in table for x in row)
+        values = np.array([[complex(x.mid()) for x in row] for row in table]).T
+    if not np.isfinite(values).all() or not blur < inf:
+        return None
+    noise = samples * (blur + ROUNDING * float(np.abs(values).max()))
+    coefficients = np.fft.fft2(values) / samples
+    return Patch(centre, radius, middle, half, coefficients, error + noise, error + rows * noise)
+
+
+def _circle(centre: complex, radius: float, points: int) -> list[acb]:
+    """Return points on a circle, counterclockwise."""
+    turns = ((2 * arb.pi() * acb(0, k) / points).exp() for k in range(points))
+    return [acb(centre.real, centre.imag) + radius * turn for turn in turns]
+
+
+def _disc(centre: complex, radius: float) -> acb:
+    off = arb(0, radius)
+    return acb(centre.real, centre.imag) + acb(off, off)
+
+
+def _shifted(coefficients: Coefficients, by: complex) -> Coefficients:
+    """Return polynomials, one a column, about another point."""
+    chosen, powers = _binomials(len(coefficients))
+    shifted: Coefficients = (chosen * (complex(by) ** np.arange(len(coefficients)))[powers]) @ coefficients
+    return shifted
+
+
+@cache
+def _binomials(count: int) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:
+    """Return ``comb(j, i)`` in row i and column j, and ``j - i`` where that is not negative."""
+    each = range(count)
+    chosen = np.array([[float(comb(j, i)) for j in each] for i in each])
+    steps = np.arange(count)
+    return chosen, np.maximum(steps[None, :] - steps[:, None], 0)

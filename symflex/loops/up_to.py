@@ -1,0 +1,441 @@
+"""For which values of a parameter a model is stable, as far as its poles up to a frequency go.
+
+Input: a characteristic function, the range of a parameter inside wavenumbers, and a frequency. Output: parts
+of the range with the poles in the right half-plane counted in each, and gaps between them.
+
+Example: a cantilever whose tip carries a force P that turns with it has all poles on the axis up to
+P = 20.0509... EI/l^2, where the two lowest pairs meet and leave it (Beck 1952).
+
+It is proved that no pole enters or leaves the right half of a disc for all values in a part: its arc is free
+of poles, and so is the axis (boundary crossing theorem; Bhattacharyya, Chapellat and Keel 1995, theorem 1.4).
+Without damping, F is even in s and poles may stay on the axis, where F is real but for a factor j. They leave
+it only where two of them meet, which none do where F or its slope differs from 0. Poles are counted at one
+value of each part, by the argument principle, and by changes of sign along the axis.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from itertools import islice, pairwise
+from math import ceil, inf, log2, pi
+from typing import Literal
+
+from flint import acb, acb_series, arb, fmpz_mpoly
+
+from symflex.algebra import Factored
+from symflex.balls import UndecidedError, at_centre, ball, branch, covered, narrowed, precision
+from symflex.balls.branching import Branching, Open
+from symflex.budget import spend
+from symflex.expressions import names_among
+from symflex.loops.boxes import CharacteristicFunction, Ends, FirstOrder, Piece, factors_of
+from symflex.loops.patches import ROOM, ULP, Bound, Patch, patch
+from symflex.loops.stability_map import PoleCount
+from symflex.roots.functions.kernel_function import KernelFunction
+from symflex.roots.root import exact_fraction
+
+WAVES = 10.0  # largest argument of a kernel up to which poles are counted if no frequency is given
+FEW_WAVES = 16  # radians up to which exponentials of matrices lose few of the digits
+FEW = 4.0  # radians of waves for which a path has as many cells as for less
+WIDER = tuple(1 + Fraction(k, 32) for k in range(9))  # of the circle, for parts whose poles meet it
+SHORTEST = 1e-9  # share of a path that is not halved where poles are counted
+MOST_OPEN = 48  # pieces left open after which others stay as they are: halves of the part leave fewer
+SPARE = 20  # bits by which pieces of the axis that are not halved are wider than the precision
+DEEPEST = 6  # halvings of the range until a patch has to serve
+WIDENED = 2  # widths by which places on the axis are widened to prove that one pair meets there
+STEPS, SHARE = 40, 0.9  # of Newton's method, each of which leaves less than this share
+
+
+@dataclass(frozen=True, slots=True)
+class OpenPart:
+    """A part of the range with the pieces of the axis on which poles may leave it, factor by factor."""
+
+    ends: Ends
+    pieces: tuple[tuple[Piece, ...], ...]
+    circle: Fraction | None = None  # radius of an arc that no pole meets [rad/s], if one is known
+
+    @property
+    def halves(self) -> list[OpenPart]:
+        """Both halves of the part."""
+        return [replace(self, ends=ends) for ends in _halves(self.ends)]
+
+
+@dataclass(frozen=True, slots=True)
+class Path:
+    """The imaginary axis up to a frequency, or a quarter of a circle from the real axis up to it.
+
+    Shares of the axis grow with the root of the frequency, as waves of beams do.
+    """
+
+    kind: Literal["axis", "arc"]
+    end: Fraction  # frequency, or radius [rad/s]
+    cells: int  # equal parts, each of which lies in a disc that is not large for the waves
+
+    def at(self, share: Fraction) -> acb:
+        """Return the point at a share of the path."""
+        if self.kind == "axis":
+            return acb(0, ball(self.end * share**2))
+        return ball(self.end) * (acb(0, ball(share)) * arb.pi() / 2).exp()
+
+    def box(self, piece: Piece) -> acb:
+        """Return a box about a piece."""
+        if self.kind == "axis":
+            return self.at(piece[0]).union(self.at(piece[1]))
+        share = acb(0, ball(piece[0]).union(ball(piece[1])))
+        return ball(self.end) * (share * arb.pi() / 2).exp()
+
+    def middle(self, piece: Piece) -> acb:
+        """Return a point in the middle of a piece."""
+        low, high = piece
+        if self.kind == "axis":
+            return acb(0, ball(self.end * (low**2 + high**2) / 2)).mid()
+        return self.at((low + high) / 2).mid()
+
+    def reach(self, piece: Piece) -> float:
+        """Return how far a piece lies from its middle at most."""
+        low, high = piece
+        if self.kind == "axis":
+            return float(self.end * (high**2 - low**2) / 2) * (1 + ULP)
+        return float(self.end * (high - low)) * pi / 4 * (1 + ULP)
+
+
+@dataclass(frozen=True, slots=True)
+class PartValues:
+    """The factors for all values of the parameter in a part."""
+
+    ends: Ends
+    near: FirstOrder  # sharp next to s = 0
+    far: FirstOrder
+
+
+@dataclass(frozen=True, eq=False)
+class PolesUpTo:
+    """The poles of a model up to a frequency, for values of one parameter."""
+
+    function: CharacteristicFunction
+    radius: Fraction  # the frequency [rad/s]
+    limits: Ends
+    bits: int  # precision of values on narrow parts
+
+    @classmethod
+    def of(cls, function: CharacteristicFunction, limits: Ends, radius: float | None, bits: int) -> PolesUpTo:
+        """Return those up to a frequency [rad/s], without one up to a few waves of the longest element."""
+        if radius is None:
+            moving = _kernel_functions(function, function.at_rest[1], limits[1])
+            radius = min(part.frequency_of(WAVES) for part in moving)
+        return cls(function, Fraction(radius), limits, bits)
+
+    @staticmethod
+    def serves(function: CharacteristicFunction) -> bool:
+        """Tell whether the model has waves, and functions of these that are entire at s = 0."""
+        tf, _ = function.at_rest
+        return any(kernel.function == "fundamental" for kernel in tf.kernels.kernels)
+
+    @property
+    def whole(self) -> OpenPart:
+        """The range, and the axis up to the widest circle for each factor that the parameter moves."""
+        marks = [Fraction(k, self._cells) for k in range(self._cells + 1)]
+        return OpenPart(self.limits, tuple(tuple(pairwise(marks)) for _ in self._moving))
+
+    @cached_property
+    def axis(self) -> Path:
+        """The axis up to the widest circle."""
+        return self._path("axis", self.radius * WIDER[-1])
+
+    def _path(self, kind: Literal["axis", "arc"], end: Fraction) -> Path:
+        return Path(kind, end, self._cells // (2 if kind == "arc" else 1))
+
+    @cached_property
+    def _cells(self) -> int:
+        """A power of 2, about as many as radians in the waves along the longest element."""
+        waves = max(part.reach(float(self.radius)) for part in self._parts)
+        return 1 << ceil(log2(max(waves, FEW)))
+
+    @cached_property
+    def _factors(self) -> tuple[tuple[fmpz_mpoly, int], ...]:
+        """All factors, entire at s = 0, with their exponents."""
+        tf, _ = self.function.at_rest
+        every = [(f, e) for f, e in tf.den.factors if e > 0]
+        every += [(h.polynomial, h.multiplicity) for h in tf.hidden]
+        return tuple((f, e) for f, e in every if factors_of(tf, [f]))
+
+    @cached_property
+    def _moving(self) -> list[int]:
+        """Those whose roots depend on the parameter."""
+        moving = self.function.at_rest[1]
+        return [i for i, (factor, _) in enumerate(self._factors) if factor in moving]
+
+    @cached_property
+    def _parts(self) -> list[KernelFunction]:
+        """The factors for the last value of the range."""
+        return _kernel_functions(self.function, [f for f, _ in self._factors], self.limits[1])
+
+    @cached_property
+    def _are_even(self) -> list[bool]:
+        """Whether roots of each are proved to mirror each other in the axis, whatever the value."""
+        return [part.is_even for part in self._parts]
+
+    def narrowed(self, part: OpenPart) -> OpenPart | Open[OpenPart]:
+        """Return the part with a circle if poles stay where they are, else what the axis still has open."""
+        values = self._on(part.ends)
+        pieces = zip(self._moving, part.pieces, strict=True)
+        left = replace(part, pieces=tuple(self._left(values, factor, each) for factor, each in pieces))
+        circle = None if any(left.pieces) else self._circle_for(part.ends)
+        return Open(left) if circle is None else replace(left, circle=circle)
+
+    def _circle_for(self, ends: Ends) -> Fraction | None:
+        """Return the radius of an arc that no pole meets for any value in a part, None if none is known."""
+        for around in self._about(ends):
+            if around not in self._free:
+                values, circles = self._on(around), (self.radius * times for times in WIDER)
+                arcs = (self._path("arc", circle) for circle in circles)
+                self._free[around] = next((a.end for a in arcs if self._is_free(values, a)), None)
+            if self._free[around] is not None:
+                return self._free[around]
+        return None
+
+    @cached_property
+    def _free(self) -> dict[Ends, Fraction | None]:
+        return {}
+
+    def _about(self, ends: Ends) -> Iterator[Ends]:
+        """Yield the range, its half about a part, and so on down to the part."""
+        around: Ends | None = self.limits
+        while around is not None:
+            yield around
+            halves = _halves(around) if around != ends else []
+            around = next((h for h in halves if h[0] <= ends[0] and ends[1] <= h[1]), None)
+
+    def _on(self, ends: Ends) -> PartValues:
+        tf, _ = self.function.at_rest
+        factors = tuple(f for f, _ in self._factors)
+        kinds = (replace(self.function, is_modal=False), self.function)
+        return PartValues(ends, *(FirstOrder(function, tf, factors, (ends,)) for function in kinds))
+
+    def _left(self, values: PartValues, factor: int, pieces: Sequence[Piece]) -> tuple[Piece, ...]:
+        """Return pieces of the axis, as shares of it, on which poles may leave it, ascending."""
+        sharp = set[Piece]()
+
+        def decide(piece: Piece) -> Open[Piece] | None:
+            found = self._bound(values, factor, self.axis, piece)
+            if not self._is_open(factor, found):
+                return None
+            if found.is_as_sharp_as_the_part:
+                sharp.add(piece)
+            return Open(piece)
+
+        def halve(piece: Piece) -> list[Piece]:
+            is_short = (piece[1] - piece[0]) * 2 ** (self.bits - SPARE) < 1
+            return [] if piece in sharp or is_short else _halves(piece)
+
+        search: Branching[Piece, None] = branch(
+            pieces, decide, halve, until=lambda found, _: len(found.undecided) >= MOST_OPEN
+        )
+        return tuple(sorted(search.undecided))
+
+    def _is_open(self, factor: int, found: Bound) -> bool:
+        """Tell whether poles may leave the axis: without damping where two meet, and the slope is 0."""
+        return found.may_vanish and (found.may_turn or not self._are_even[factor])
+
+    def _is_free(self, values: PartValues, arc: Path) -> bool:
+        """Tell whether no pole meets an arc in the right half-plane for any value in a part."""
+        try:
+            for factor in self._moving:
+                for _ in self._without_root(values, factor, arc):
+                    pass
+        except UndecidedError:
+            return False
+        return True
+
+    def _bound(self, values: PartValues, factor: int, path: Path, piece: Piece) -> Bound:
+        """Return what is known of a factor on a piece of a path, for all values in a part."""
+        (low, high), ends = piece, values.ends
+        known = None
+        if path.kind == "arc" or path == self.axis:
+            known = self._patch(factor, path, int((low + high) / 2 * path.cells), ends)
+        if known is None and ends[0] < ends[1] and (ends[1] - ends[0]) * 2**DEEPEST > self._width:
+            return Bound(True, True, 1.0, 0.0)
+        if known is not None:
+            at = complex(path.middle(piece))
+            off = float(ends[1] - ends[0]) / 2
+            found, is_rough = known.on(at, path.reach(piece), float(_middle(ends)), off)
+            if is_rough or not self._is_open(factor, found):
+                return found
+        with precision(self.bits):
+            # Next to s = 0 roots of dispersions meet; far out exponentials of matrices lose digits.
+            waves = path.cells * high if path.kind == "axis" else 2 * path.cells
+            own = values.near if waves <= FEW_WAVES else values.far
+            return _directly(own, factor, path.box(piece), path.middle(piece))
+
+    @property
+    def _width(self) -> Fraction:
+        return self.limits[1] - self.limits[0]
+
+    def _patch(self, factor: int, path: Path, number: int, ends: Ends) -> Patch | None:
+        """Return what stands for a factor about a piece of a path, on the largest part about another."""
+        for around in islice(self._about(ends), DEEPEST):
+            key = factor, path, number, around
+            if key not in self._patches:
+                self._patches[key] = self._patch_on(factor, path, number, around)
+            if self._patches[key] is not None:
+                return self._patches[key]
+        return None
+
+    @cached_property
+    def _patches(self) -> dict[tuple[int, Path, int, Ends], Patch | None]:
+        return {}
+
+    def _patch_on(self, factor: int, path: Path, number: int, ends: Ends) -> Patch | None:
+        function, (tf, _) = self.function, self.function.at_rest
+        (name,) = function.names
+        if any(names_among(c.expression, {name}) for c in tf.constants):
+            return None
+        middle = _middle(ends)
+        with precision(64):
+            kernels = function.kernels(tf, ((middle, middle),))
+        polynomial, _ = self._factors[factor]
+
+        def values(points: Sequence[acb], parameter: acb) -> list[acb]:
+            spend()
+            own = replace(kernels, constants={**kernels.constants, name: parameter})
+            return [at_centre(own.polynomial(polynomial, own.at(s))) for s in points]
+
+        cell = Fraction(number, path.cells), Fraction(number + 1, path.cells)
+        half = float(ends[1] - ends[0]) / 2
+        return patch(values, complex(path.middle(cell)), ROOM * path.reach(cell), float(middle), ROOM * half)
+
+    def count(self, at: Fraction, circle: Fraction) -> PoleCount | None:
+        """Return how many poles lie on the right and on the axis for one value; None if it is not proved."""
+        total, values = PoleCount(0, 0), self._on((at, at))
+        with suppress(UndecidedError):
+            for factor, (_, exponent) in enumerate(self._factors):
+                own = self._count(values, factor, circle)
+                if own is None:
+                    return None
+                total += PoleCount(exponent * own.right, exponent * own.axis)
+            return total
+        return None
+
+    def _count(self, values: PartValues, factor: int, circle: Fraction) -> PoleCount | None:
+        """Return the same of one factor: the lower half of the plane mirrors the upper one."""
+        arc, axis = self._path("arc", circle), self._path("axis", circle)
+        turn = self._turn(values, factor, arc)
+        if self._are_even[factor]:
+            pieces = self._with_one_root(values, factor, axis)
+            crossed = sum(bool(self._ratio(values, factor, axis, each).real < 0) for each in pieces)
+            whole = (2 * turn / arb.pi()).unique_fmpz()
+            right = -1 if whole is None else int(whole) - 2 * crossed  # twice as many
+            return None if right < 0 or right % 2 else PoleCount(right // 2, 2 * crossed)
+        half = ((turn - self._turn(values, factor, axis)) / arb.pi()).unique_fmpz()
+        return None if half is None or half < 0 else PoleCount(int(half), 0)
+
+    def _turn(self, values: PartValues, factor: int, path: Path) -> arb:
+        """Return how far a factor turns on a path, on each piece of which it has no root."""
+        pieces = self._without_root(values, factor, path)
+        with precision(self.bits):
+            return sum((self._ratio(values, factor, path, each).arg() for each in pieces), arb(0))
+
+    def _ratio(self, values: PartValues, factor: int, path: Path, piece: Piece) -> acb:
+        """Return what a factor is at the end of a piece over what it is at its start."""
+        with precision(self.bits):
+            first, last = (values.far.at(path.at(x), [factor])[0][0] for x in piece)
+            ratio = last / first
+        if not ratio.is_finite() or ratio.contains(0):
+            raise UndecidedError
+        return ratio
+
+    def _without_root(self, values: PartValues, factor: int, path: Path) -> Iterator[Piece]:
+        """Yield pieces of a path on which a factor is proved to have no root; UndecidedError if it may."""
+        first, last = values.ends
+
+        def decide(low: float, high: float) -> bool | None:
+            found = self._bound(values, factor, path, (Fraction(low), Fraction(high)))
+            if found.may_vanish and found.is_as_sharp_as_the_part and first < last:
+                raise UndecidedError  # no shorter piece serves
+            return not found.may_vanish or None
+
+        pieces = covered(decide, path.cells, SHORTEST)
+        return ((Fraction(low), Fraction(high)) for low, high, _ in pieces)
+
+    def _with_one_root(self, values: PartValues, factor: int, path: Path) -> Iterator[Piece]:
+        """Yield pieces of the axis on which a factor that is real there has one simple root at most."""
+
+        def decide(low: float, high: float) -> bool | None:
+            found = self._bound(values, factor, path, (Fraction(low), Fraction(high)))
+            return not (found.may_vanish and found.may_turn) or None
+
+        pieces = covered(decide, path.cells, SHORTEST)
+        return ((Fraction(low), Fraction(high)) for low, high, _ in pieces)
+
+    def frequencies(self, part: OpenPart) -> tuple[tuple[Piece, ...], ...]:
+        """Return the pieces of the axis in rad/s, as narrow as places where two poles meet are known."""
+        whole = self.axis.end
+        found = []
+        for factor, pieces in zip(self._moving, part.pieces, strict=True):
+            own = [(low**2 * whole, high**2 * whole) for low, high in pieces]
+            if own and own[0][0] and self._are_even[factor]:
+                meeting = self._meeting(part.ends, factor, (own[0][0], own[-1][1]))
+                own = own if meeting is None else [meeting]
+            found.append(tuple(own))
+        return tuple(found)
+
+    def _meeting(self, ends: Ends, factor: int, piece: Piece) -> Piece | None:
+        """Return a smaller piece that holds where two poles on the axis meet: F' is 0 there alone."""
+        tf, _ = self.function.at_rest
+        polynomial, _ = self._factors[factor]
+        with precision(self.bits):
+            evaluator = self.function.kernels(tf, (ends,))
+
+            def slopes(omega: arb) -> tuple[acb, acb]:
+                at = evaluator.at(acb_series([acb(0, omega), 1], 3))
+                series = evaluator.polynomial(polynomial, at)
+                return (series[1], 2 * series[2]) if isinstance(series, acb_series) else (acb(0), acb(0))
+
+            def newton(omega: arb) -> arb:
+                # A step in s = j omega: F' over F'' is imaginary.
+                return omega.mid() - (slopes(omega.mid())[0] / slopes(omega)[1]).imag
+
+            room = WIDENED * (piece[1] - piece[0])
+            around = ball(piece[0] - room).union(ball(piece[1] + room))
+            first = newton(around)
+            if not (first.is_finite() and around.contains(first)):
+                return None
+            root = narrowed(first, newton, STEPS, SHARE)
+            return exact_fraction(root.lower()), exact_fraction(root.upper())
+
+
+def _directly(values: FirstOrder, factor: int, s: acb, middle: acb) -> Bound:
+    """Return what is known of a factor on a box about a point, by balls and by the mean value theorem."""
+    near = values.generators(s)
+    ((value, slope),) = values.around(s, [factor], near)
+    ((centre, terms),) = values.swings(middle, [factor], near)
+    by_path = slope * (s - middle)
+    mean = sum((term * arb(0, 1) for term in terms), centre) + by_path
+    sharper = mean if mean.is_finite() and not mean.rad() > value.rad() else value
+    by_part = sum((term.abs_upper() for term in terms), arb(0))
+    return Bound(
+        bool(sharper.contains(0)),
+        bool(slope.contains(0)),
+        float(by_part) if by_part.is_finite() else inf,
+        float(by_path.abs_upper()) if by_path.is_finite() else inf,
+    )
+
+
+def _kernel_functions(
+    function: CharacteristicFunction, factors: Sequence[fmpz_mpoly], at: Fraction
+) -> list[KernelFunction]:
+    """Return factors that are entire at s = 0 for one value of the parameter."""
+    tf, _ = function.at_rest
+    bound = function.bound_in(tf, ((at, at),))
+    return [KernelFunction(bound, Factored.polynomial(tf.ratio.ring, factor)) for factor in factors]
+
+
+def _middle(ends: Ends) -> Fraction:
+    return (ends[0] + ends[1]) / 2
+
+
+def _halves(ends: Ends) -> list[Ends]:
+    return [(ends[0], _middle(ends)), (_middle(ends), ends[1])]

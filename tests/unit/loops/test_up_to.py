@@ -1,0 +1,137 @@
+"""Stability over parameters inside wavenumbers: critical loads and speeds of books, recomputed by mpmath.
+
+Expected values: roots of 4 x 4 determinants of exponentials with mpmath, 30 digits, f = 0 and df/ds = 0 where
+two poles meet on the axis. Beck (1952), Gregory and Paidoussis (1966), Bolotin (1963), Euler (1744).
+"""
+
+from math import pi
+
+import numpy as np
+import pytest
+from flint import acb
+
+from symflex import loads
+from symflex.errors import UsageError
+from symflex.loops.patches import patch
+
+BECK, BECK_OMEGA = 20.0509536189737, 11.0155576409229  # EI/l^2, rad/s
+
+COLUMN = """
+symflex = 1
+parameters = {{ EI = 1, c = 0.001, L = 1, m = 1, P = 10 }}
+inputs = {{ F = {{}} }}
+outputs = {{ Y = "w(L)" }}
+[fields.w]
+domain = ["0", "L"]
+equation = "{bending} + P*w'' + m*s^2*w = 0"
+conditions = ["w(0) = 0", "w'(0) = 0", "w''(L) = 0", "{shear} = -F"]
+"""
+FOLLOWER = COLUMN.format(bending="EI*w''''", shear="EI*w'''(L)")
+DEAD = COLUMN.format(bending="EI*w''''", shear="EI*w'''(L) + P*w'(L)")
+LOSSY = COLUMN.format(bending="(EI + c*s)*w''''", shear="EI*w'''(L)")
+
+PIPE = """
+symflex = 1
+parameters = { EI = 1, L = 1, m_t = 1, beta = 0.2, U = 3 }
+inputs = { F = {} }
+outputs = { Y = "w(L)" }
+[fields.w]
+domain = ["0", "L"]
+equation = "EI*w'''' + U^2*w'' + 2*sqrt(beta)*U*s*w' + m_t*s^2*w = 0"
+conditions = ["w(0) = 0", "w'(0) = 0", "w''(L) = 0", "EI*w'''(L) = -F"]
+"""
+
+PANEL = """
+symflex = 1
+parameters = { D = 1, L = 1, m = 1, q = 200 }
+inputs = { M = {} }
+outputs = { Y = "w'(L)" }
+[fields.w]
+domain = ["0", "L"]
+equation = "D*w'''' + q*w' + m*s^2*w = 0"
+conditions = ["w(0) = 0", "w''(0) = 0", "w(L) = 0", "D*w''(L) = M"]
+"""
+
+
+def the_boundary(found, value, omega, change):
+    (boundary,) = found.proved.boundaries
+    assert abs(float(boundary.gain.mid()) / value - 1) < 1e-10
+    assert [float(w.mid()) for w in boundary.frequencies] == pytest.approx([omega], rel=1e-10)
+    assert found.proved.change(0) == change
+
+
+def test_a_patch_holds_the_function_on_discs_up_to_their_rims():
+    def exponentials(points, p):
+        return [(s * p).exp() for s in points]
+
+    made = patch(exponentials, 1 + 2j, 0.125, 2.0, 0.125)
+    assert made is not None
+    shares = np.exp(2j * pi * np.arange(7) / 7)
+    for s, p in [(x, y) for x in shares for y in shares]:
+        value = sum(c * s**i * p**k for (i, k), c in np.ndenumerate(made.coefficients))
+        assert abs(value - np.exp((1 + 2j + s / 8) * (2 + p / 8))) < made.error < 1e-3
+
+
+def test_a_patch_tells_where_a_function_and_its_slope_vanish():
+    def square(points, p):
+        return [s * s + p for s in points]
+
+    made = patch(square, 0j, 1.0, 0.25, 0.5)
+    assert made is not None
+    at_root, _ = made.on(0.5j, 0.05, 0.25, 0.01)
+    beside, _ = made.on(0.5j, 0.05, 0.25 + 0.2, 0.01)
+    at_turn, _ = made.on(0j, 0.05, 0.25, 0.01)
+    assert (at_root.may_vanish, at_root.may_turn) == (True, False)
+    assert not beside.may_vanish
+    assert (at_turn.may_vanish, at_turn.may_turn) == (False, True)
+
+
+def test_a_patch_is_refused_where_a_function_has_a_pole():
+    def pole(points, p):
+        return [1 / (s - p) for s in points]
+
+    assert patch(pole, 1j, 1.0, 0.0, 0.5) is None
+    assert patch(lambda points, _: [acb("nan") for _ in points], 1j, 1.0, 0.0, 0.5) is None
+
+
+def test_poles_of_a_column_under_a_follower_load_meet_on_the_axis():
+    model = loads(FOLLOWER)
+    found = model.stability(over="P", limits=(20, 20.1), up_to_hz=2.5, digits=11)
+    the_boundary(found, BECK, BECK_OMEGA, 2)
+    assert not found.certified and found.counted_up_to_hz == pytest.approx(2.5)
+    assert [i.poles.word for i in found.proved.intervals] == ["marginal", "unstable"]
+    assert found.proved.verdict.word == "unknown"  # poles beyond are not counted
+
+
+def test_a_column_under_a_dead_load_buckles_at_a_quarter_of_pi_squared():
+    found = loads(DEAD).stability(over="P", limits=(2.4, 2.5), up_to_hz=1, digits=11)
+    (boundary,) = found.proved.boundaries
+    assert abs(float(boundary.gain.mid()) - pi**2 / 4) < 1e-11
+    assert [float(w.mid()) for w in boundary.frequencies] == [0]
+    assert [(i.poles.right, i.poles.axis) for i in found.proved.intervals] == [(0, 2), (1, 0)]
+
+
+def test_up_to_a_frequency_a_chart_is_refused():
+    with pytest.raises(UsageError, match="does not apply to a chart"):
+        loads(FOLLOWER).stability(over=("P", "m"), up_to_hz=2)
+
+
+@pytest.mark.slow
+def test_a_pipe_flutters_at_the_speed_of_gregory_and_paidoussis():
+    found = loads(PIPE).stability(over="U", limits=(5, 6), up_to_hz=5)
+    the_boundary(found, 5.59140437782707, 13.7146998005345, 2)
+    assert [i.poles.word for i in found.proved.intervals] == ["stable", "unstable"]
+
+
+@pytest.mark.slow
+def test_loss_takes_half_of_the_critical_load_of_a_column():
+    # With loss all poles in the right half-plane have a bound, and all are counted.
+    found = loads(LOSSY).stability(over="P")
+    the_boundary(found, 10.9391219969785, 5.39862478360082, 2)
+    assert found.certified and found.is_stable
+
+
+@pytest.mark.slow
+def test_a_panel_flutters_where_its_two_lowest_poles_meet():
+    found = loads(PANEL).stability(over="q", limits=(100, 500), up_to_hz=15)
+    the_boundary(found, 343.3564262798, 32.4315638843160, 2)
