@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import cmath
 import json
 import math
 import random
 from fractions import Fraction
 from importlib import resources
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -53,6 +55,17 @@ export const evaluated = (read, write) => {
     write("sin.bin", sines);
     return null;
 };
+export const isolated = (tape, z) => {
+    const f = factorOf(tape);
+    f.bind([]);
+    return enclosed(f, z);
+};
+export const chords = (tape, radius) => {
+    const f = factorOf(tape), discs = [];
+    f.bind([]);
+    const count = counted({ ...f, at(list, ...disc) { discs.push(disc); f.at(list, ...disc); } }, radius);
+    return { count, discs };
+};
 """
 
 DAMPED = """
@@ -74,12 +87,19 @@ inputs.u = {}
 outputs.Y = "y"
 """
 
+BETWEEN = """
+symflex = 1
+signals.y = "u/(s + 9007199254740993)"
+inputs.u = {}
+outputs.Y = "y"
+"""
+
 
 @pytest.fixture
 def node(tmp_path):
     (tmp_path / "live.mjs").write_text(KERNEL + WALK, encoding="utf-8")
     node = Node(tmp_path)
-    node.lines.insert(0, 'import { walked, computed, evaluated } from "./live.mjs";')
+    node.lines.insert(0, 'import { walked, computed, evaluated, isolated, chords } from "./live.mjs";')
     return node
 
 
@@ -195,6 +215,47 @@ def test_a_pole_that_a_zero_cancels_at_these_values_is_not_proved(node):
     proved = [sorted(round(z["re"], 9) for z in state["poles"] if z["proved"]) for state in node.values[key]]
     assert proved == [[-2.0], [-2.0, -0.4]]
     assert [state["certified"]["poles"] for state in node.values[key]] == [False, True]
+
+
+def test_a_newton_step_that_leaves_its_disc_proves_no_root(node):
+    # a + g s + c s^2 with g anywhere within a radius of 1. Steps are a/least, discs 4 a: least has to exceed
+    # 1/4. For g = 0.2 the roots -(g +- sqrt(g^2 - 4 a c))/(2 c) are 9.95 a from 0, and a/(0.2 - 8 a c) 8.4 a.
+    size, bent = 2.0**-20, 0.0101
+    keys = []
+    for radius in (0.8, 0.67, 0.668):  # least is 0.119, 0.249 and 0.251
+        rows = [["s"], ["#", 1, 0, radius], ["#", bent / size, 0, 0], ["#", size, 0, 0], ["*", 2, 0]]
+        rows += [["+", 1, 4], ["*", 5, 0], ["+", 6, 3], ["+", 5, 4]]
+        part = {"tape": rows, "value": 7, "slope": 8, "growth": [], "divisors": []}
+        keys.append(node.keep(f"String(isolated({json.dumps(part)}, [0, 0]))"))
+    node.run()
+    *outside, inside = (float(node.values[key].replace("Infinity", "inf")) for key in keys)
+    roots = [abs(z) for z in np.roots([bent / size, 0.2, size])]
+    assert min(roots) > size / (0.2 - 8 * bent)
+    assert outside == [math.inf, math.inf]
+    assert min(abs(z) for z in np.roots([bent / size, 1 - 0.668, size])) < inside < 4 * size
+
+
+def test_the_discs_of_a_count_reach_from_corner_to_corner_and_no_farther(node):
+    # s + 3 has no root within 1, and one within 4: sixteen chords of half a polygon decide both.
+    rows = [["s"], ["#", 3, 0, 0], ["+", 0, 1], ["#", 0, 0, 0]]
+    part = {"tape": rows, "value": 2, "slope": 3, "growth": [3], "divisors": []}
+    keys = [node.keep(f"chords({json.dumps(part)}, {radius})") for radius in (1, 4)]
+    node.run()
+    for key, radius, count in zip(keys, (1, 4), (0, 1), strict=True):
+        assert node.values[key]["count"] == count
+        discs = [(complex(x, y), r) for x, y, r, *_ in node.values[key]["discs"][1:] if r]
+        corners = [radius * cmath.exp(1j * math.pi * k / 16) for k in range(17)]
+        # The last chord comes first.
+        for (centre, r), ends in zip(discs[::-1], pairwise(corners), strict=True):
+            assert all(1 - 1e-15 < r / abs(end - centre) < 1 + 1e-12 for end in ends)
+
+
+def test_numbers_that_are_no_doubles_have_a_radius_that_reaches_them():
+    # 2^53 + 1 lies between the doubles 2^53 and 2^53 + 2, as far from both as a number can be.
+    (tf,) = pipeline.derive_all(pipeline.loads(BETWEEN))
+    rows = tape_of(tf, {})["poles"][0]["tape"]
+    _, x, _, radius = max(row for row in rows if row[0] == "#")
+    assert abs(2**53 + 1 - int(x)) <= radius <= 4
 
 
 def test_functions_whose_parameters_are_fixed_are_refused_with_a_reason():

@@ -160,6 +160,9 @@ def test_conditions_of_40_models_hold_exactly_where_all_roots_lie_left_of_the_ax
         ("(a - b)^2*s + c", ["a != b"]),
         ("a*s^3 + b*s + c", ["0 > a*c"]),  # a power of s is missing: the determinant is -a*c
         ("R*s + k*R^2 + R", ["k*R + 1 > 0"]),
+        # The roots of R^2 - 9 R + 17, of discriminant 81 - 4*17 = 13, are 2.7 and 6.3; 49 - 4*13 = -3.
+        ("s + R^2 - 9*R + 17", ["R^2 + 17 > 9*R"]),
+        ("s + R^2 - 7*R + 13", []),
     ],
 )
 def test_what_follows_from_signs_or_from_other_conditions_is_left_out(num, expected):

@@ -11,7 +11,7 @@ from symflex import Model, load, loads
 from symflex.errors import ModelError, UsageError
 from symflex.loops.boxes import CharacteristicFunction, OpenBox
 from symflex.loops.loop import pick_gain
-from symflex.loops.over import characteristic, find_intervals, with_values
+from symflex.loops.over import ABOUT, characteristic, find_intervals, pair_that_crosses, with_values
 from tests.house.repository import ROOT
 
 LAG = Model(
@@ -62,6 +62,43 @@ def oscillator(gain: float) -> Model:
         inputs={"r": {"unit": "m"}},
         outputs={"X": "x"},
     )
+
+
+NEAR = Fraction(1, 10**6)
+WIDENED = NEAR + ABOUT * 2 * NEAR
+
+
+def crossing(den, *radii, around=(Fraction(-1), Fraction(1)), low=1, high=1):
+    """Return what a gap about b = 0, with roots next to frequencies, changes of the poles on the right."""
+    function = characteristic(
+        loads(f"""
+            symflex = 1
+            parameters.b = {{ value = 0.1, assume = "real" }}
+            signals.y = "r/({den})"
+            inputs.r = {{}}
+            outputs.Y = "y"
+            """).resolved,
+        ("b",),
+        ((Fraction(-1), Fraction(1)),),
+    )
+    piece = (max(Fraction(0), low - NEAR), high + NEAR)
+    gaps = [OpenBox(((-NEAR, NEAR),), r, tuple((piece,) for _ in function.factors)) for r in radii or (9.0,)]
+    return pair_that_crosses(function, gaps, around, 128)
+
+
+def test_a_pair_crosses_in_a_gap_where_all_is_proved_and_nothing_less() -> None:
+    """``s^2 + b s + 1`` has its roots to the right exactly for b < 0; each other line lacks one condition."""
+    assert crossing("s^2 + b*s + 1") == -2
+    assert crossing("s^2 - b*s + 1") == 2
+    # The widened gap has to lie inside what has no other root on the axis, at both ends.
+    assert crossing("s^2 + b*s + 1", around=(-WIDENED - NEAR / 10**6, WIDENED + NEAR / 10**6)) == -2
+    assert crossing("s^2 + b*s + 1", around=(-WIDENED, Fraction(1))) == 0
+    assert crossing("s^2 + b*s + 1", around=(Fraction(-1), WIDENED)) == 0
+    assert crossing("(s^2 + b*s + 1)^2") == 0  # two pairs cross together
+    assert crossing("(s^2 + b*s + 1)*(s^2 - b*s + 1)") == 0  # one each way
+    assert crossing("s^4 + b*s^3 + 5*s^2 + 2*b*s + 4", high=2) == 0  # two of one factor, at 1 and 2 rad/s
+    assert crossing("s + b", low=0, high=0) == 0  # a real pole, not a pair
+    assert crossing("s^2 + b*s + 1", 9.0, "how far roots lie is not known") == 0
 
 
 def test_an_integrator_with_a_delay_is_stable_up_to_half_of_pi() -> None:
