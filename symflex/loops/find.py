@@ -34,8 +34,10 @@ from symflex.loops.stability_map import (
     AllowedCrossover,
     Boundary,
     Crossing,
+    DataEnd,
     GainInterval,
     GainMargin,
+    Margins,
     PhaseMargin,
     PoleCount,
     StabilityMap,
@@ -80,97 +82,138 @@ def find_stable_gains(
     root = None if isinstance(loop, NetworkLoop) else loop.bound.root
     if root is not None and root.shift != 0:
         return _at_nominal(loop, limits or (None, None), digits, BRANCH)
-    end = None if loop.model.data_end is None else 2 * pi * float(loop.model.data_end)
-    lumped, along, (low, high), apart, at_end = _parts(loop, limits, up_to, end)
-    if apart.verdict.right is None:
-        return _at_nominal(loop, (low, high), digits, apart.verdict.reason)
-    end = None if isinstance(along, NetworkFactors) else end
-    if along is not None and not along.radius[1] and WITHOUT_END in along.reasons[-1]:
-        return _at_nominal(loop, (low, high), digits, along.reasons[-1])
-    resting = PoleCount(apart.right, apart.axis)
+    parts = _parts(loop, limits, up_to)
+    if parts.why_not:
+        return _at_nominal(loop, parts.limits, digits, parts.why_not)
+    lumped, along = parts.lumped, parts.along
     try:
         if along is not None and along.is_mirrored:
-            return _at_nominal(loop, (low, high), digits, MIRRORED)
+            return _at_nominal(loop, parts.limits, digits, MIRRORED)
         crossings = [c for factor in lumped for c in factor.crossings(digits + GUARD_DIGITS)]
         if along is not None:
             crossings += along.crossings(digits + GUARD_DIGITS)
-        boundaries, intervals, open_ends = _between(crossings, lumped, along, (low, high), resting, end)
+        boundaries, intervals, open_ends = _between(crossings, parts)
     except UncertifiedError as error:
         if loop.nominal is None:
             raise
         told = error.diagnostics[0]
-        return _at_nominal(loop, (low, high), digits, "; ".join(filter(None, (told.message, told.hint))))
-    nominal = loop.nominal
-    radius = end if along is None else along.from_root(along.radius[0])
-    reasons = [] if along is None else along.reasons[end is not None :]
-    if end is not None and at_end is None:
-        reasons.append(
-            f"'{loop.gain.name}' closes several loops: no loop gain says what matters beyond the data"
-        )
-    is_complete = along is None or along.radius[1] or end is not None
-    stability = StabilityMap(
+        reason = "; ".join(filter(None, (told.message, told.hint)))
+        return _at_nominal(loop, parts.limits, digits, reason)
+    stability = _map_of(loop, parts, boundaries, intervals, digits)
+    # What all gains leave open may be known of one: terms outweigh one another, or the loop is passive.
+    # What is said of a range does not prove one gain of it where next to s = 0 poles are not followed.
+    is_open = stability.verdict.word == "unknown" or (root and along is not None and along.reasons)
+    if loop.nominal is not None and parts.end is None and is_open:
+        stability = replace(stability, at_nominal=_verdict_at(loop, loop.nominal))
+    loop_gain = _loop_gain(loop, along, digits + GUARD_DIGITS) if has_loop_gain and not root else None
+    margins, unknown = Margins(gain_margins(stability)), list[str]()
+    if loop_gain is not None:
+        margins, unknown = _margins(stability, parts, loop_gain, margins)
+    # The search for crossovers may have added to the reasons.
+    reasons = (*open_ends, *parts.reasons, *unknown)
+    return replace(stability, margins=margins, reasons=tuple(dict.fromkeys(reasons)))
+
+
+@dataclass(frozen=True)
+class _GainSearch:
+    """What a loop is made of for a search of its gains."""
+
+    lumped: list[LumpedFactor]
+    along: AnyFactors | None  # factors with kernels
+    limits: Limits
+    apart: PolesApart  # poles that no gain moves, as far as they are roots of polynomials
+    end: float | None = None  # where the data end [rad/s]
+    gain_at_end: float | None = None
+    name: str = ""  # of the gain
+
+    @property
+    def why_not(self) -> str:
+        """Why the range is not searched; empty if it is."""
+        if self.apart.verdict.right is None:
+            return self.apart.verdict.reason
+        along = self.along
+        is_endless = along is not None and not along.radius[1] and WITHOUT_END in along.reasons[-1]
+        return along.reasons[-1] if along is not None and is_endless else ""
+
+    @property
+    def is_complete(self) -> bool:
+        """All poles in the right half-plane are counted, or all that the data show."""
+        return self.along is None or self.along.radius[1] or self.end is not None
+
+    @property
+    def reasons(self) -> list[str]:
+        """What is open, and why."""
+        reasons = [] if self.along is None else [*self.along.reasons[self.end is not None :]]
+        if self.end is not None and self.gain_at_end is None:
+            reasons.append(
+                f"'{self.name}' closes several loops: no loop gain says what matters beyond the data"
+            )
+        return reasons
+
+
+def _map_of(
+    loop: AnyLoop,
+    parts: _GainSearch,
+    boundaries: tuple[Boundary, ...],
+    intervals: tuple[GainInterval, ...],
+    digits: int,
+) -> StabilityMap:
+    """Return what was searched, without margins."""
+    along, end, nominal, data = parts.along, parts.end, loop.nominal, None
+    if end is not None:
+        data = DataEnd(end, parts.gain_at_end, () if nominal is None else _beyond(parts.lumped, nominal, end))
+    return StabilityMap(
         loop.gain.name,
         loop.gain.unit,
-        (low, high),
+        parts.limits,
         boundaries,
         intervals,
         nominal,
-        radius=radius,
-        is_complete=is_complete,
-        reasons=tuple(reasons),
+        radius=end if along is None else along.from_root(along.radius[0]),
+        is_complete=parts.is_complete,
+        reasons=tuple(parts.reasons),
         digits=digits,
         method="polynomials" if along is None else along.method,
-        apart=apart,
+        apart=parts.apart,
         tf=loop.bound.name if isinstance(loop, Loop) else "",
         is_passive=along is not None and along.energy.is_passive,
         is_narrowed=along is not None and along.is_narrowed,
-        data_end=end,
-        beyond=() if end is None or nominal is None else _beyond(lumped, nominal, end),
-        gain_at_end=at_end,
+        data=data,
         counted_in=loop.gain.counted_in,
     )
-    # What all gains leave open may be known of one: terms outweigh one another, or the loop is passive.
-    # What is said of a range does not prove one gain of it where next to s = 0 poles are not followed.
-    is_open = stability.verdict.word == "unknown" or (
-        root is not None and along is not None and along.reasons
-    )
-    if nominal is not None and end is None and is_open:
-        stability = replace(stability, at_nominal=_verdict_at(loop, nominal))
-    loop_gain = _loop_gain(loop, along, digits + GUARD_DIGITS) if has_loop_gain and not root else None
-    phase_margins: tuple[PhaseMargin, ...] = ()
+
+
+def _margins(
+    stability: StabilityMap, parts: _GainSearch, loop_gain: LoopGain, known: Margins
+) -> tuple[Margins, list[str]]:
+    """Return the margins of a loop that is closed once, and what is not known of them."""
+    along, interval, unknown = parts.along, stability.nominal_interval, list[str]()
+    phases: tuple[PhaseMargin, ...] = ()
+    if stability.nominal and interval is not None and interval.poles.is_stable:
+        phases = loop_gain.margins(stability.nominal)
+    if parts.end is not None:
+        phases = tuple(m for m in phases if not m.frequency > parts.end)
     crossover = beyond = None
-    if loop_gain is not None:
-        interval = stability.nominal_interval
-        if nominal and interval is not None and interval.poles.is_stable:
-            phase_margins = loop_gain.margins(nominal)
-        if end is not None:
-            phase_margins = tuple(m for m in phase_margins if not m.frequency > end)
-        if loop_gain.value is None:
-            crossover = allowed_crossover(intervals, high, loop_gain)
-        if is_complete and along is not None and along.is_endless and along.energy.is_passive:
-            beyond = along.energy.least_phase_margin(along.radius[0])
-            if not _holds_smallest(phase_margins, crossover, beyond):
-                reasons.append(f"phase margins above {along.radius[0] / (2 * pi):.4g} Hz are not known")
-    return replace(
-        stability,
-        gain_margins=gain_margins(stability),
-        phase_margins=phase_margins,
-        crossover=crossover,
-        margin_beyond=beyond or None,  # an angle of 0 bounds nothing
-        reasons=tuple(dict.fromkeys((*open_ends, *reasons))),
-    )
+    if loop_gain.value is None:
+        crossover = allowed_crossover(stability.intervals, parts.limits[1], loop_gain)
+    if parts.is_complete and along is not None and along.is_endless and along.energy.is_passive:
+        beyond = along.energy.least_phase_margin(along.radius[0])
+        if not _holds_smallest(phases, crossover, beyond):
+            unknown.append(f"phase margins above {along.radius[0] / (2 * pi):.4g} Hz are not known")
+    # An angle of 0 bounds nothing.
+    return replace(known, phases=phases, crossover=crossover, least_beyond=beyond or None), unknown
 
 
-def _parts(
-    loop: AnyLoop, limits: Limits | None, up_to: float | None, end: float | None
-) -> tuple[list[LumpedFactor], AnyFactors | None, Limits, PolesApart, float | None]:
-    """Return what :func:`_factors` does, poles that no gain moves, and the gain at the end of the data."""
+def _parts(loop: AnyLoop, limits: Limits | None, up_to: float | None) -> _GainSearch:
+    """Return what a loop is made of, with the range of its gain."""
     if isinstance(loop, NetworkLoop):
-        ends = _bounded(loop, _range(loop, limits, has_kernels=True))
-        return [], NetworkFactors(loop, loop.gain.name, ends, up_to), ends, PolesApart(), None
+        bounded = _bounded(loop, _range(loop, limits, has_kernels=True))
+        return _GainSearch([], NetworkFactors(loop, loop.gain.name, bounded, up_to), bounded, PolesApart())
+    end = None if loop.model.data_end is None else 2 * pi * float(loop.model.data_end)
     at_end = None if end is None else _gain_at_end(loop, end)
-    # Poles that no gain moves, as far as they are roots of polynomials.
-    return *_factors(loop, limits, up_to, end, at_end), poles_apart(loop.bound, _split(loop)[0]), at_end
+    lumped, along, ends = _factors(loop, limits, up_to, end, at_end)
+    apart = poles_apart(loop.bound, _split(loop)[0])
+    return _GainSearch(lumped, along, ends, apart, end, at_end, loop.gain.name)
 
 
 def _gain_at_end(loop: Loop, end: float) -> float | None:
@@ -294,16 +337,13 @@ def _split(loop: Loop) -> tuple[tuple[GainPolynomial, ...], tuple[GainPolynomial
 
 
 def _between(
-    crossings: Sequence[Crossing],
-    lumped: Sequence[LumpedFactor],
-    along: AnyFactors | None,
-    limits: Limits,
-    apart: PoleCount,
-    end: float | None,
+    crossings: Sequence[Crossing], parts: _GainSearch
 ) -> tuple[tuple[Boundary, ...], tuple[GainInterval, ...], list[str]]:
-    """Return boundaries, intervals and what is not proved, but for crossings beyond ``end`` [rad/s]."""
+    """Return boundaries, intervals and what is not proved, but for crossings beyond the end of data."""
+    lumped, along, end = parts.lumped, parts.along, parts.end
+    apart = PoleCount(parts.apart.right, parts.apart.axis)
     reasons: list[str] = []
-    groups, ends = _grouped(crossings, limits, reasons)
+    groups, ends = _grouped(crossings, parts.limits, reasons)
     counts = []
     own: PoleCount | None = None  # of the factors with kernels
     for i, (below, above) in enumerate(pairwise(ends)):

@@ -44,10 +44,8 @@ def without_image(found: StabilityMap, function: CharacteristicFunction) -> Stab
     tf = function.tf
     polynomials = (*(f for f, e in tf.den.factors if e > 0), *(h.polynomial for h in tf.hidden))
     alone = replace(function, chosen=polynomials)
-    boundaries = tuple(_with_signs(b, alone, found.digits) for b in found.boundaries)
-    moved = dict(zip(map(id, found.boundaries), boundaries, strict=True))
-    margins = tuple(replace(m, boundary=moved.get(id(m.boundary), m.boundary)) for m in found.gain_margins)
-    found = replace(found, intervals=intervals, boundaries=boundaries, gain_margins=margins)
+    found = found.with_boundaries([_with_signs(b, alone, found.digits) for b in found.boundaries])
+    found = replace(found, intervals=intervals)
     if found.method == BOXES:
         return found
     at_nominal = None if found.nominal is None else count_at(function, (found.nominal,))[0]

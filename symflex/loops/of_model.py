@@ -134,7 +134,8 @@ def stability(
         are_quick = isinstance(loop, Loop) and not loop.has_waves and loop.bound.sheets == 1
         if isinstance(loop, Loop) and (given.peaks or are_quick) and model.data_end is None:
             if written.is_stable and loop.nominal and is_straight(loop):
-                written = replace(written, peaks=loop_peaks(loop, loop.nominal))
+                peaks = loop_peaks(loop, loop.nominal)
+                written = replace(written, margins=replace(written.margins, peaks=peaks))
     except BudgetError:
         if quick is None:
             raise

@@ -32,7 +32,15 @@ from symflex.loops.find import gain_margins
 from symflex.loops.image import with_image, without_image
 from symflex.loops.loop import pick_gain
 from symflex.loops.of_model import of_rational
-from symflex.loops.stability_map import BOXES, Boundary, Crossing, GainInterval, PoleCount, StabilityMap
+from symflex.loops.stability_map import (
+    BOXES,
+    Boundary,
+    Crossing,
+    GainInterval,
+    Margins,
+    PoleCount,
+    StabilityMap,
+)
 from symflex.loops.up_to import OpenPart, PolesUpTo
 from symflex.model import Model, ModelParameter, with_numbers
 from symflex.model.along import is_tapered
@@ -249,7 +257,7 @@ def find_intervals(
     )
     if nominal is not None and (stability.verdict.word == "unknown" or function.tf.hidden):
         stability = replace(stability, at_nominal=count_at(function, (nominal,))[0])
-    return replace(stability, gain_margins=gain_margins(stability))
+    return replace(stability, margins=Margins(gain_margins(stability)))
 
 
 def _counted_to_the_end(

@@ -18,7 +18,7 @@ from symflex.roots.pole_zero_map import WITHOUT_END, StabilityVerdict
 from symflex.roots.root import degrees, hertz, real_json, short_hertz
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from symflex.loops.peak import LoopPeaks
 
@@ -43,6 +43,18 @@ class Boundary:
         frequencies = [omega for crossing in self.crossings for omega in crossing.frequencies]
         return tuple(sorted(frequencies, key=lambda omega: float(omega.mid())))
 
+    def to_json_dict(self, digits: int, change: int) -> dict[str, object]:
+        """Return it as JSON data, with the change of poles in the right half-plane as the gain grows."""
+        return {
+            "gain": real_json(self.gain, digits),
+            "omega": [real_json(w, digits) for w in self.frequencies],
+            "frequency_hz": [float(hertz(w).mid()) for w in self.frequencies],
+            "through_infinity": any(c.is_infinite for c in self.crossings),
+            "mirrored_poles_meet": any(c.is_symmetric for c in self.crossings),
+            "no_solution": any(c.is_singular for c in self.crossings),
+            "poles_entering_right_half_plane": change,
+        }
+
 
 @dataclass(frozen=True, slots=True)
 class GainInterval:
@@ -58,6 +70,17 @@ class GainInterval:
             value = ball(gain)
             above = self.low is None or bool(value > self.low)
             return above and (self.high is None or bool(value < self.high))
+
+    def to_json_dict(self, digits: int) -> dict[str, object]:
+        """Return it as JSON data."""
+        return {
+            "low": real_json(self.low, digits),
+            "high": real_json(self.high, digits),
+            "right_half_plane_poles": self.poles.right,
+            "imaginary_axis_poles": self.poles.axis,
+            "stable": self.poles.is_stable,
+            "verdict": self.poles.word,
+        }
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +108,90 @@ class AllowedCrossover:
     phase_margin: arb | None  # the smallest one there in absolute value [rad], positive for lag
     is_limited: bool  # by a boundary: twice the gain is one. Otherwise the gains examined end there.
 
+    def to_json_dict(self, digits: int) -> dict[str, object]:
+        """Return it as JSON data."""
+        omega, angle = self.frequency, self.phase_margin
+        return {
+            "gain": None if self.gain is None else float(self.gain),
+            "omega": real_json(omega, digits),
+            "frequency_hz": None if omega is None else float(hertz(omega).mid()),
+            "phase_margin_degrees": None if angle is None else float(degrees(angle).mid()),
+            "limited": self.is_limited,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Margins:
+    """What a loop that is stable with its nominal gain still takes, and what stable gains allow."""
+
+    gains: tuple[GainMargin, ...] = ()
+    phases: tuple[PhaseMargin, ...] = ()  # at every crossover, ascending in frequency
+    crossover: AllowedCrossover | None = None  # which stable gains next to 0 allow, of one loop
+    least_beyond: float | None = None  # phase margins beyond the radius are no smaller [rad], if known
+    peaks: LoopPeaks | None = None  # if they were asked for
+
+    @property
+    def smallest_phase(self) -> PhaseMargin | None:
+        """The smallest phase margin in absolute value."""
+        return min(self.phases, key=lambda m: abs(float(m.angle.mid())), default=None)
+
+    @property
+    def least_degrees_beyond(self) -> float:
+        """``least_beyond`` in degrees, 0 without one."""
+        return (self.least_beyond or 0.0) * 180 / pi
+
+    def to_json_dict(self, digits: int, radius: float | None) -> dict[str, object]:
+        """Return them as JSON data; ``radius`` is that beyond which margins have a bound [rad/s]."""
+        worst, has_bound = self.smallest_phase, self.least_beyond is not None and radius is not None
+        return {
+            "gain_margins": [
+                {
+                    "factor": real_json(m.factor, digits),
+                    "decibels": float(decibels(m.factor).mid()),
+                    "frequencies_hz": [float(hertz(w).mid()) for w in m.boundary.frequencies],
+                }
+                for m in self.gains
+            ],
+            "phase_margins": [
+                {
+                    "degrees": real_json(degrees(m.angle), digits),
+                    "omega": real_json(m.frequency, digits),
+                    "frequency_hz": float(hertz(m.frequency).mid()),
+                    "smallest": m is worst,
+                }
+                for m in self.phases
+            ],
+            "peaks": self.peaks and self.peaks.to_json_dict(),
+            "margin_beyond": {
+                "omega": radius,
+                "frequency_hz": (radius or 0.0) / (2 * pi),
+                "degrees": self.least_degrees_beyond,
+            }
+            if has_bound
+            else None,
+            "bandwidth": self.crossover and self.crossover.to_json_dict(digits),
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class DataEnd:
+    """Up to where a loop about a fitted function is judged, and what that function does beyond."""
+
+    omega: float  # where the data of the fit end [rad/s]
+    gain: float | None  # with which the loop gain is one there; None without a loop gain
+    beyond: tuple[float, ...]  # abs(s) of right-half-plane poles beyond, without kernels [rad/s]
+
+    def to_json_dict(self) -> dict[str, object]:
+        """Return it as JSON data."""
+        return {
+            "frequency_hz": self.omega / (2 * pi),
+            "gain_with_loop_gain_one": self.gain,
+            "right_half_plane_poles_beyond_hz": [omega / (2 * pi) for omega in self.beyond],
+        }
+
+
+NO_MARGINS = Margins()
+
 
 @dataclass(frozen=True)
 class StabilityMap(Printed):
@@ -96,24 +203,18 @@ class StabilityMap(Printed):
     boundaries: tuple[Boundary, ...] = ()  # ascending
     intervals: tuple[GainInterval, ...] = ()  # between them, ascending
     nominal: Fraction | None = None  # the gain's declared value
-    gain_margins: tuple[GainMargin, ...] = ()  # of the nominal gain, when the loop is stable there
-    phase_margins: tuple[PhaseMargin, ...] = ()  # at every crossover, ascending in frequency
+    margins: Margins = NO_MARGINS
     radius: float | None = None  # poles were counted up to this abs(s) [rad/s]; ``None``: all of them
     is_complete: bool = True  # it is proved that no pole lies in the right half-plane beyond the radius
     reasons: tuple[str, ...] = ()  # what is open, and why
     digits: int = 15  # asked for
-    crossover: AllowedCrossover | None = None  # which stable gains next to 0 allow, of one loop
-    margin_beyond: float | None = None  # phase margins beyond are no smaller [rad], if no more is known
     method: str = ""  # polynomials, argument principle, roots, passive loop; boxes if no gain
     apart: PolesApart = NOTHING_APART  # poles that no gain moves: hidden ones are not in ``intervals``
     at_nominal: StabilityVerdict | None = None  # what holds there alone, if ``intervals`` leave it open
     tf: str = ""  # ``"OUT/IN"``, which sees the poles that are not hidden; empty where nothing is
     is_passive: bool = False  # it is proved that no gain of the range brings a pole into the right half-plane
     is_narrowed: bool = False  # the range ends where a delayed term may outweigh the others
-    data_end: float | None = None  # where the data of a fit end, the ``radius`` then [rad/s]
-    beyond: tuple[float, ...] = ()  # abs(s) of right-half-plane poles beyond, without kernels [rad/s]
-    gain_at_end: float | None = None  # the gain with which the loop gain is one where the data end
-    peaks: LoopPeaks | None = None  # of the nominal gain, if the loop is stable and they were asked for
+    data: DataEnd | None = None  # of a fit; where they end is the ``radius`` then
     counted_in: tuple[str, Fraction] | None = None  # the unit in which it prints, and what one of it is
     is_gain: bool = True  # the parameter is asked for as the gain of a loop
 
@@ -145,22 +246,25 @@ class StabilityMap(Printed):
         def exact(gain: Fraction | None) -> Fraction | None:
             return None if gain is None else gain / size
 
-        boundaries = tuple(replace(b, gain=enclosed(b.gain) or b.gain) for b in self.boundaries)
-        moved = dict(zip(map(id, self.boundaries), boundaries, strict=True))
+        moved = self.with_boundaries([replace(b, gain=enclosed(b.gain) or b.gain) for b in self.boundaries])
+        crossover = self.crossover and replace(self.crossover, gain=exact(self.crossover.gain))
         return replace(
-            self,
+            moved,
             unit=unit,
             counted_in=None,
             limits=(exact(self.limits[0]), exact(self.limits[1])),
-            boundaries=boundaries,
             intervals=tuple(replace(i, low=enclosed(i.low), high=enclosed(i.high)) for i in self.intervals),
             nominal=exact(self.nominal),
-            gain_margins=tuple(
-                replace(m, boundary=moved.get(id(m.boundary), m.boundary)) for m in self.gain_margins
-            ),
-            crossover=self.crossover and replace(self.crossover, gain=exact(self.crossover.gain)),
-            gain_at_end=None if self.gain_at_end is None else self.gain_at_end / float(size),
+            margins=replace(moved.margins, crossover=crossover),
+            data=self.data and replace(self.data, gain=self.data.gain and self.data.gain / float(size)),
         )
+
+    def with_boundaries(self, boundaries: Sequence[Boundary]) -> StabilityMap:
+        """Return the map with other boundaries in their place, of which margins tell."""
+        moved = dict(zip(map(id, self.boundaries), boundaries, strict=True))
+        gains = (replace(m, boundary=moved.get(id(m.boundary), m.boundary)) for m in self.gain_margins)
+        margins = replace(self.margins, gains=tuple(gains))
+        return replace(self, boundaries=tuple(boundaries), margins=margins)
 
     def __post_init__(self) -> None:
         if not self.is_complete and not self.reasons:
@@ -175,12 +279,37 @@ class StabilityMap(Printed):
     @property
     def counted_up_to(self) -> float | None:
         """Up to which abs(s) poles in the right half-plane are counted [rad/s]; ``None``: all of them are."""
-        return None if self.is_complete and self.data_end is None else self.radius
+        return None if self.is_complete and self.data is None else self.radius
 
     @property
     def where_data_end(self) -> str:
         """Up to where the loop is judged, in words; empty where no data end."""
-        return "" if self.data_end is None else f"up to {_hertz(self.data_end)}, where the data end"
+        return "" if self.data is None else f"up to {_hertz(self.data.omega)}, where the data end"
+
+    @property
+    def gain_margins(self) -> tuple[GainMargin, ...]:
+        """By which factors the nominal gain may change, when the loop is stable there."""
+        return self.margins.gains
+
+    @property
+    def phase_margins(self) -> tuple[PhaseMargin, ...]:
+        """The phase margins at every crossover, ascending in frequency."""
+        return self.margins.phases
+
+    @property
+    def crossover(self) -> AllowedCrossover | None:
+        """The crossover that stable gains next to 0 allow, of one loop."""
+        return self.margins.crossover
+
+    @property
+    def peaks(self) -> LoopPeaks | None:
+        """The peaks with the nominal gain, if the loop is stable and they were asked for."""
+        return self.margins.peaks
+
+    @property
+    def data_end(self) -> float | None:
+        """Where the data of a fit end [rad/s]."""
+        return None if self.data is None else self.data.omega
 
     @property
     def stable(self) -> tuple[GainInterval, ...]:
@@ -225,11 +354,10 @@ class StabilityMap(Printed):
     @property
     def phase_margin(self) -> PhaseMargin | None:
         """The smallest phase margin in absolute value."""
-        return min(self.phase_margins, key=lambda m: abs(float(m.angle.mid())), default=None)
+        return self.margins.smallest_phase
 
     def to_json_dict(self) -> dict[str, object]:
         """Return the map in the schema ``symflex.stability/1``, ready for :func:`json.dumps`."""
-        worst = self.phase_margin
         return {
             "schema": SCHEMA,
             "gain": self.gain,
@@ -239,82 +367,17 @@ class StabilityMap(Printed):
             "range": [None if x is None else str(x) for x in self.limits],
             "certified": self.certified,
             "counted_up_to_rad_per_s": self.counted_up_to,
-            "data_end": None
-            if self.data_end is None
-            else {
-                "frequency_hz": self.data_end / (2 * pi),
-                "gain_with_loop_gain_one": self.gain_at_end,
-                "right_half_plane_poles_beyond_hz": [omega / (2 * pi) for omega in self.beyond],
-            },
+            "data_end": self.data and self.data.to_json_dict(),
             "reasons": list(self.reasons),
             "boundaries": [
-                {
-                    "gain": real_json(boundary.gain, self.digits),
-                    "omega": [real_json(w, self.digits) for w in boundary.frequencies],
-                    "frequency_hz": [float(hertz(w).mid()) for w in boundary.frequencies],
-                    "through_infinity": any(c.is_infinite for c in boundary.crossings),
-                    "mirrored_poles_meet": any(c.is_symmetric for c in boundary.crossings),
-                    "no_solution": any(c.is_singular for c in boundary.crossings),
-                    "poles_entering_right_half_plane": self.change(i),
-                }
-                for i, boundary in enumerate(self.boundaries)
+                b.to_json_dict(self.digits, self.change(i)) for i, b in enumerate(self.boundaries)
             ],
-            "intervals": [
-                {
-                    "low": real_json(i.low, self.digits),
-                    "high": real_json(i.high, self.digits),
-                    "right_half_plane_poles": i.poles.right,
-                    "imaginary_axis_poles": i.poles.axis,
-                    "stable": i.poles.is_stable,
-                    "verdict": i.poles.word,
-                }
-                for i in self.intervals
-            ],
+            "intervals": [interval.to_json_dict(self.digits) for interval in self.intervals],
             "nominal": None if self.nominal is None else str(self.nominal),
             "stable": self.is_stable,
             "verdict": self.verdict.to_json_dict(),
-            "gain_margins": [
-                {
-                    "factor": real_json(m.factor, self.digits),
-                    "decibels": float(decibels(m.factor).mid()),
-                    "frequencies_hz": [float(hertz(w).mid()) for w in m.boundary.frequencies],
-                }
-                for m in self.gain_margins
-            ],
-            "phase_margins": [
-                {
-                    "degrees": real_json(degrees(m.angle), self.digits),
-                    "omega": real_json(m.frequency, self.digits),
-                    "frequency_hz": float(hertz(m.frequency).mid()),
-                    "smallest": m is worst,
-                }
-                for m in self.phase_margins
-            ],
-            "peaks": self.peaks and self.peaks.to_json_dict(),
-            "margin_beyond": None
-            if self.margin_beyond is None or self.radius is None
-            else {
-                "omega": self.radius,
-                "frequency_hz": self.radius / (2 * pi),
-                "degrees": self.least_degrees_beyond,
-            },
-            "bandwidth": None
-            if (crossover := self.crossover) is None
-            else {
-                "gain": None if crossover.gain is None else float(crossover.gain),
-                "omega": real_json(omega := crossover.frequency, self.digits),
-                "frequency_hz": None if omega is None else float(hertz(omega).mid()),
-                "phase_margin_degrees": None
-                if (angle := crossover.phase_margin) is None
-                else float(degrees(angle).mid()),
-                "limited": crossover.is_limited,
-            },
+            **self.margins.to_json_dict(self.digits, self.radius),
         }
-
-    @property
-    def least_degrees_beyond(self) -> float:
-        """:attr:`margin_beyond` in degrees, 0 without one."""
-        return (self.margin_beyond or 0.0) * 180 / pi
 
     def change(self, index: int) -> int:
         """Return the change in the number of right half-plane poles at a boundary, as the gain grows."""
@@ -404,10 +467,9 @@ def _passages(stability: StabilityMap) -> Iterator[Passage]:
     if stability.peaks is not None:
         lines = [f"{INDENT}peaks of {stability.gain} = {_number(stability.nominal)}"]
         yield Passage(lines, tuple(stability.peaks.rows), has_head=False)
-    if stability.data_end is not None:
-        yield Passage(
-            [f"{INDENT}beyond {_hertz(stability.data_end)} nothing was measured", *_beyond(stability)]
-        )
+    if stability.data is not None:
+        beyond = f"{INDENT}beyond {_hertz(stability.data.omega)} nothing was measured"
+        yield Passage([beyond, *_beyond(stability, stability.data)])
     if stability.crossover is not None:
         said = 2 * INDENT + crossover_text(stability.gain, stability.crossover)
         yield Passage([f"{INDENT}gain crossover with a gain margin of 6 dB", said])
@@ -416,15 +478,15 @@ def _passages(stability: StabilityMap) -> Iterator[Passage]:
         yield Passage([f"{INDENT}radius bounds the distance from the printed {value} to the boundary"])
 
 
-def _beyond(stability: StabilityMap) -> Iterator[str]:
+def _beyond(stability: StabilityMap, data: DataEnd) -> Iterator[str]:
     """Tell what matters beyond the end of the data: poles of the function, and the loop gain there."""
-    if count := len(stability.beyond):
-        places = ", ".join(_hertz(omega) for omega in stability.beyond)
+    if count := len(data.beyond):
+        places = ", ".join(_hertz(omega) for omega in data.beyond)
         shown = f"{stability.gain} = {_number(stability.nominal)}"
         yield f"{2 * INDENT}{_poles(count)} of the model in the right half-plane for {shown}: {places}"
-    if stability.gain_at_end is not None:
+    if data.gain is not None:
         yield f"{2 * INDENT}the loop gain there is taken to stay below one: for {stability.gain} up to"
-        yield f"{2 * INDENT}{stability.gain_at_end:.{SHORT_DIGITS}g} it does so where the data end"
+        yield f"{2 * INDENT}{data.gain:.{SHORT_DIGITS}g} it does so where the data end"
 
 
 def _poles(count: int) -> str:
@@ -439,7 +501,7 @@ def _status(stability: StabilityMap) -> str:
     if stability.certified:
         if stability.where_data_end:
             return f"certified {stability.where_data_end}"
-        if stability.margin_beyond is not None:
+        if stability.margins.least_beyond is not None:
             return f"certified: the loop is passive, {stability.gain} acts as a spring and a damper"
         return "certified: all poles in the right half-plane counted"
     if not stability.is_complete and stability.radius is not None:
@@ -517,9 +579,9 @@ def _margins(stability: StabilityMap) -> Passage:
         flag = ", the smallest" if each is worst and len(stability.phase_margins) > 1 else ""
         shown = figure(abs(angle), SHORT_DIGITS)
         rows.append(("phase", f"{shown} deg", direction, place + flag))
-    if stability.margin_beyond is not None and stability.radius is not None:
+    if stability.margins.least_beyond is not None and stability.radius is not None:
         place = f"all above {stability.radius / (2 * pi):.{SHORT_DIGITS}g} Hz"
-        rows.append(("phase", f"{stability.least_degrees_beyond:.4g} deg", "least", place))
+        rows.append(("phase", f"{stability.margins.least_degrees_beyond:.4g} deg", "least", place))
     return Passage(lines, rows, has_head=False)
 
 

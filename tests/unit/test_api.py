@@ -443,7 +443,7 @@ def test_what_cannot_say_that_a_budget_was_exceeded_raises_with_the_map(colocate
 
 def test_what_was_proved_within_a_budget_is_not_lost(loop, monkeypatch):
     # out/r = 1/(s + 2 exp(-s/2)): s = 2 W_k(-1)
-    times = iter([0.0] * 400 + [10.0] * 100_000)
+    times = iter([0.0] * 2_000 + [10.0] * 100_000)
     monkeypatch.setattr(analyses, "Budget", lambda seconds: Budget(seconds, clock=lambda: next(times)))
     with pytest.raises(BudgetError, match="modes were found up to") as caught:
         loop.poles(modes=30, budget=5)
