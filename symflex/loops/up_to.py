@@ -38,7 +38,7 @@ from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.root import exact_fraction
 
 WAVES = 10.0  # largest argument of a kernel up to which poles are counted if no frequency is given
-FEW_WAVES = 16  # radians up to which exponentials of matrices lose few of the digits
+FEW_WAVES = 2  # radians up to which exponentials of matrices are sharper than sums of exponentials
 FEW = 4.0  # radians of waves for which a path has as many cells as for less
 WIDER = tuple(1 + Fraction(k, 32) for k in range(9))  # of the circle, for parts whose poles meet it
 SHORTEST = 1e-9  # share of a path that is not halved where poles are counted
