@@ -855,8 +855,6 @@ def _gain(given: Stated | None, parameter: ModelParameter) -> Fraction | None:
     if quantity.unit and quantity.dimension != dimension:
         own = f"is in '{parameter.unit}'" if parameter.unit else "is a number without a unit"
         raise UsageError(Diagnostic("SF203", f"'{parameter.name}' {own}, the range is in '{quantity.unit}'"))
-    if quantity.pi_power:
-        raise wrong
     return value_in_unit(parameter, quantity).nearly
 
 

@@ -27,7 +27,7 @@ from symflex.budget import entered_budget
 from symflex.errors import SymflexError
 from symflex.loops.boundary_curves import Point, boundary_curves
 from symflex.loops.boxes import Box, CharacteristicFunction, OpenBox
-from symflex.model import ModelParameter
+from symflex.model import ExactValue, ModelParameter
 from symflex.print.notebook import Printed
 from symflex.print.text import INDENT, Passage
 from symflex.roots.locate import locate
@@ -372,13 +372,17 @@ def _regions(
     return cells, tuple(regions)
 
 
-def located_at(function: CharacteristicFunction, point: Sequence[Fraction], modes: int = 1) -> PoleZeroMap:
+def located_at(
+    function: CharacteristicFunction, point: Sequence[Fraction | ExactValue], modes: int = 1
+) -> PoleZeroMap:
     """Return the poles at one point, of a distributed model so many modes."""
     bound = bind(function.tf, dict(zip(function.names, point, strict=True)))
     return locate(bound, None if bound.is_rational else Modes(modes), COUNT_DIGITS, with_zeros=False)
 
 
-def count_at(function: CharacteristicFunction, point: Sequence[Fraction]) -> tuple[StabilityVerdict, int]:
+def count_at(
+    function: CharacteristicFunction, point: Sequence[Fraction | ExactValue]
+) -> tuple[StabilityVerdict, int]:
     """Return what holds at one point, as ``symflex roots`` says it, and how many poles lie on the axis."""
     try:
         located = located_at(function, point)

@@ -85,11 +85,14 @@ def stability_over(
             Diagnostic("SF902", f"a range of '{spare[0][:64]}', which is not asked for with --over")
         )
     limits = tuple(_limits(model, p, given) for p in parameters)
-    nominal = [None if p.value is None or p.value.pi_power else p.value.rational for p in parameters]
+    nominal = [None if p.value is None else p.value.nearly for p in parameters]
     digits = given.digits or model.analysis.digits or 15
     exact = (
         of_rational(model, names[0], limits[0], digits, up_to, has_pairs=False) if len(names) == 1 else None
     )
+    if exact is not None and exact.nominal is None:  # of an angle in degrees
+        exact = replace(exact, nominal=nominal[0])
+        exact = replace(exact, gain_margins=gain_margins(exact))
     if exact is not None and exact.certified:
         return exact.of_parameter
     function = characteristic(model, names, limits)
@@ -160,14 +163,14 @@ def _limits(model: Model, parameter: ModelParameter, given: StabilityOptions) ->
     if stated is not None:
         low, high = gain_ends(stated, parameter) or (None, None)
     elif parameter.limits is not None:
-        low, high = (None if x.pi_power else x.rational for x in parameter.limits)
-    elif parameter.value is None or parameter.value.pi_power or not parameter.value.rational:
+        low, high = (x.nearly for x in parameter.limits)
+    elif parameter.value is None or not parameter.value.rational:
         low = high = None
     else:
         values = [e for use in model.elements if not use.element.is_source for _, e in use.values]
         values += [d.expression for d in model.definitions]
         is_signal = not model.fields and not any(names_among(e, {name}) for e in values)
-        value = parameter.value.rational
+        value = parameter.value.nearly
         low, high = sorted(
             (value * 0, value * WIDER) if is_signal else (value / WIDER_PART, value * WIDER_PART)
         )
@@ -256,7 +259,7 @@ def find_intervals(
         counted_in=parameter.counted_in,
     )
     if nominal is not None and (stability.verdict.word == "unknown" or function.tf.hidden):
-        stability = replace(stability, at_nominal=count_at(function, (nominal,))[0])
+        stability = replace(stability, at_nominal=count_at(function, (parameter.value or nominal,))[0])
     return replace(stability, margins=Margins(gain_margins(stability)))
 
 

@@ -115,9 +115,10 @@ class ModelParameter:
     def counted_in(self) -> tuple[str, Fraction]:
         """The unit in which results print its values, and what one of it is in the unit of ``value``.
 
-        Results are in SI units, but what was declared in rpm, kHz or mm/rev is answered in that.
+        Results are in SI units, but what was declared in rpm, kHz, mm/rev or degrees is answered in that.
         """
-        return (self.written_unit, self.scale.rational) if self.cycles else (self.unit, Fraction(1))
+        is_own = self.cycles or self.scale.pi_power
+        return (self.written_unit, self.scale.nearly) if is_own else (self.unit, Fraction(1))
 
 
 @dataclass(frozen=True, slots=True)

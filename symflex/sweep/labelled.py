@@ -130,10 +130,10 @@ class Sweep(Printed):
     def shown(self) -> tuple[Labelled, ...]:
         """The swept parameters in the units in which they print: what was declared in rpm is in rpm."""
         declared = dict(pair.split("=") for pair in self.attribute("declared_units").split("; ") if pair)
+        units = {name: unit_of(unit) for name, unit in declared.items()}
+        sizes = {name: float(unit.scale) * np.pi**unit.pi_power for name, unit in units.items()}
         return tuple(
-            replace(p, unit=unit, values=p.values / float(unit_of(unit).scale))
-            if (unit := declared.get(p.name))
-            else p
+            replace(p, unit=declared[p.name], values=p.values / sizes[p.name]) if p.name in declared else p
             for p in self.parameters
         )
 

@@ -1,7 +1,7 @@
 """Stability over any parameter: boundaries from formulas of books, verdicts at random points of charts."""
 
 from fractions import Fraction
-from math import atan2, pi, sqrt
+from math import acos, asin, atan2, pi, sqrt
 from random import Random
 
 import numpy as np
@@ -541,3 +541,66 @@ outputs = { Y = "y", V = "v" }
     assert chart.decided >= 0.8
     for k, late in ((0.6, 0.5), (0.6, 0.9), (1.6, 0.2), (2.2, 0.5), (2.4, 0.9)):
         assert chart.at(k, late) == ("stable" if k < 1 else "unstable"), (k, late)
+
+
+def test_an_angle_in_degrees_is_answered_in_degrees():
+    model = loads(
+        """symflex = 1
+        parameters = { m = "2 kg", k = "100 N/m", K = "60 N/m", b = "3 N*s/m", psi = "30 deg" }
+        inputs = { F = { unit = "N" } }
+        outputs = { X = "x" }
+        [equations]
+        unknowns = ["x", "y"]
+        equations = [
+          "m*s^2*x + b*s*x + k*x - K*sin(psi)*y = F",
+          "m*s^2*y + b*s*y + k*y + K*cos(psi)*x = 0",
+        ]
+        """
+    )
+    found = model.stability(over="psi", limits=("0 deg", "90 deg"))
+    # By hand: m s^2 + b s + k = +-j K sqrt(sin cos), on the axis where b w = K sqrt(sin cos) and w^2 = k/m.
+    angle = asin(2 * (3 * sqrt(100 / 2) / 60) ** 2) / 2
+    assert [float(b.gain) for b in found.boundaries] == pytest.approx([angle, pi / 2 - angle], rel=1e-13)
+    lines = str(found).splitlines()
+    assert lines[0].startswith("psi [deg]   certified")
+    assert lines[1].split("examined: ")[1] == "0 < psi < 90"
+    assert f"0 < psi < {angle * 180 / pi:.12f}"[:20] in str(found)
+    assert found.verdict.word == "unstable"
+
+
+@pytest.mark.slow  # 20 s
+def test_a_frame_member_stands_at_any_angle():
+    model = loads(
+        """symflex = 1
+        [parameters]
+        psi = "45 deg"
+        K = "1200 N"
+        [elements]
+        up = { type = "spring", between = ["hub.y", "ground"], k = "2 kN/m" }
+        loss = { type = "damper", between = ["hub.y", "ground"], b = "20 N*s/m" }
+        across = { type = "spring", between = ["hub.x", "ground"], k = "5 MN/m" }
+        drag = { type = "damper", between = ["hub.x", "ground"], b = "200 N*s/m" }
+        joint = { type = "torsion_spring", between = ["hub.theta", "ground"], k = "400 N*m/rad" }
+        oil = { type = "rotary_damper", between = ["hub.theta", "ground"], b = "2 N*m*s/rad" }
+        act = { type = "torque_source", at = "hub.theta", tau = "K*tip.y" }
+        [elements.arm]
+        type = "frame"
+        between = ["hub", "tip"]
+        E = "69 GPa"
+        I = "2000 mm^4"
+        A = "150 mm^2"
+        rho = "2700 kg/m^3"
+        l = "0.5 m"
+        angle = "psi"
+        eta = "50 us"
+        [inputs]
+        F = { force = "tip.y" }
+        [outputs]
+        Y = "tip.y"
+        """
+    )
+    found = model.stability(over="psi", limits=("45 deg", "50 deg"))
+    # At rest nothing bends the arm: kt theta = K l cos(psi) theta, at which the joint gives way.
+    assert [float(b.gain) for b in found.boundaries] == pytest.approx([acos(400 / (1200 * 0.5))], rel=1e-12)
+    assert [b.entering for b in found.boundaries] == [-1]
+    assert found.certified
