@@ -130,9 +130,11 @@ class PolesUpTo:
 
     @staticmethod
     def serves(function: CharacteristicFunction) -> bool:
-        """Tell whether the model has waves, and functions of these that are entire at s = 0."""
+        """Tell whether the model has waves, and functions of these that are entire at s = 0, and no j."""
         tf, _ = function.at_rest
-        return any(kernel.function == "fundamental" for kernel in tf.kernels.kernels)
+        return not function.is_complex and any(
+            kernel.function == "fundamental" for kernel in tf.kernels.kernels
+        )
 
     @property
     def whole(self) -> OpenPart:
