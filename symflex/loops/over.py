@@ -92,7 +92,7 @@ def stability_over(
     )
     if exact is not None and exact.nominal is None:  # of an angle in degrees
         exact = replace(exact, nominal=nominal[0])
-        exact = replace(exact, gain_margins=gain_margins(exact))
+        exact = replace(exact, margins=Margins(gain_margins(exact)))
     if exact is not None and exact.certified:
         return exact.of_parameter
     function = characteristic(model, names, limits)
