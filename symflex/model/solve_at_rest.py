@@ -387,7 +387,7 @@ class _Search:
             x
             for x in self._found(guesses, start)
             if not all(map(arb.overlaps, x, solution))
-            and all(abs(a - y) <= r for a, y, r in zip(x, start, reach, strict=True))
+            and not any(abs(a - y) > r for a, y, r in zip(x, start, reach, strict=True))
         ]
 
     def _anywhere(self) -> Iterator[Sequence[arb]]:

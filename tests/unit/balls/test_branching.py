@@ -79,5 +79,6 @@ def test_a_path_is_covered_by_pieces_that_touch_or_is_undecided():
     pieces = covered(lambda a, b: b <= 0.3 or a >= 0.25 or None, 1, 0.01)
     assert [a for a, *_ in pieces] == [0.0, 0.25, 0.5]
     assert [b for _, b, _ in pieces] == [0.25, 0.5, 1.0]
+    assert covered(lambda a, b: b - a, 4, 0.01) == [(k / 4, (k + 1) / 4, 0.25) for k in range(4)]
     with pytest.raises(UndecidedError):
         covered(lambda a, b: b <= 0.3 or a >= 0.3 or None, 1, 0.01)

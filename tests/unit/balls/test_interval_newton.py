@@ -1,5 +1,6 @@
 """Interval Newton steps on polynomials whose roots are known."""
 
+import pytest
 from flint import acb, arb
 
 from symflex.balls import narrowed, newton_box, status_of, stays_inside, two_steps
@@ -26,6 +27,7 @@ def test_a_step_has_to_stay_inside_on_both_axes_and_to_be_known():
     for off in [acb(0.2), acb(0, 0.2)]:
         assert stays_inside(off, arb(0.25))
         assert not stays_inside(off, arb(0.125))
+    assert stays_inside(acb(0.2, 0.2), arb(0.25))  # a corner of the square, not of a disc
     assert not stays_inside(acb(float("nan")), arb(1))
 
 
@@ -36,6 +38,23 @@ def test_a_root_stays_in_its_box_while_that_becomes_smaller():
     box = arb(1.4, 0.1)
     assert narrowed(box, lambda _: arb(1.4, 0.2), 5, 0.5).rad() == box.rad()
     assert narrowed(box, lambda _: arb("nan"), 5, 0.5).rad() == box.rad()
+
+
+def test_the_last_step_is_the_first_that_leaves_more_than_a_share():
+    # 8 steps are allowed; the first that leaves half is kept, and is the last one.
+    for left, steps in ((0.5, 1), (0.75, 1), (0.25, 8), (1.0, 0)):
+        found = narrowed(arb(1, 1), lambda box, left=left: arb(1, left * box.rad()), 8, 0.5)
+        assert float(found.rad()) == pytest.approx(left**steps, rel=1e-6)
+
+
+def test_one_unknown_is_narrowed_on_while_the_other_stays():
+    def steps(box, bits):
+        return arb(0, 0.999 * box[0].rad()), arb(0, box[1].rad() / 4)
+
+    status, (x, y) = newton_box(steps, (arb(1, 0.5), arb(1, 0.5)), 64, 300)
+    assert status == "one"
+    assert x.rad() > 0.4
+    assert y.rad() < 1e-18
 
 
 def circle_steps(box, bits):

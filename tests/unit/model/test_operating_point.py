@@ -289,6 +289,7 @@ REFUSED = {
     "x' = 1/x - u": "SF224",
     "x' = s*x*x - u": "SF222",
     "x' = x*(s + 1)*x - u": "SF222",
+    "x' = s*x*x^2 - u": "SF222",
     "x' = sqrt(b^2) - b + x - u": "SF407",  # b is negative
     "x' = y - u": "SF210",
     "x' = sqr(a) + x - u": "SF210",
@@ -407,6 +408,18 @@ def test_a_bracket_has_a_derivative_without_an_operating_point_too():
     assert str(loads(text).transfer_function("O_x/u")) == "O_x/u = 1/(m*s + 3)"
 
 
+def test_a_bracket_that_changes_may_be_divided_by():
+    # (x^2)' is 2 x x', 0 at rest: what is left of the quotient is x/k.
+    text = _text("x", ["x' + x/(k + (x^2)') = u"], {"x": "0"}, [], "u", {"k": 2})
+    assert str(loads(text).transfer_function("O_x/u")) == "O_x/u = k/(k*s + 1)"
+
+
+def test_a_linear_equation_is_turned_round_where_every_term_has_a_minus():
+    for equation, shown in (("u = x'' + sin(x)", "s^2*x + x = u"), ("x'' - sin(x) = u", "s^2*x - x = u")):
+        (linear,) = loads(_text("x", [equation], {"x": "0"}, [], "u", {})).resolved.operating_point.linear
+        assert format_expression(linear) == shown
+
+
 def test_outputs_and_signals_have_derivatives_in_time():
     section = {"unknowns": ["x"], "equations": ["m*x'' + b*x' + k*sin(x) = F"]}
     model = Model(
@@ -431,6 +444,7 @@ SPEEDS = {  # equations of the speed, signals, values at rest
     "a rate that follows": (["q' = w", "J_p*w' = T"], {"omega": "q'"}, {"w": "n"}),
     "a rate that follows from a rate": (["p' = q'", "q' = w", "J_p*w' = T"], {"omega": "p'"}, {"w": "n"}),
     "a signal whose value is given": (["J_p*q'' = T"], {"omega": "s*q"}, {"omega": "n"}),
+    "a rate with s that follows": (["s*q = w", "J_p*w' = T"], {"omega": "q'"}, {"w": "n"}),
     "a rate on the right": (["w = q'", "J_p*w' = T"], {"omega": "q'"}, {"w": "n"}),
 }
 

@@ -148,6 +148,38 @@ def test_values_that_depend_on_each_other_are_followed_together():
     assert sorted(listed["x_0"]) == pytest.approx([2 - 3**0.5, 1.3787967, 2 + 3**0.5], rel=1e-5)
 
 
+def test_another_solution_brings_doubt_where_no_unknown_is_farther_from_its_declared_value():
+    def text(equations, x_0, y_0, **values):
+        rest = {"x": "x_0", "y": "y_0", "u": "1"}
+        return _text(values | {"x_0": x_0, "y_0": y_0}, ["x", "y"], equations, rest, ["x_0", "y_0"])
+
+    # x = 1, and y turns at 1 between 0.811 and 1.177, which are as far as 0.994; x may be declared as it is.
+    fold = ["x' + x^3 + x = 2*u", "y' + y^3 - 3*y = -1.9*u"]
+    one, other = sorted(np.roots([1, 0, -3, 1.9]).real)[1:]
+    for x_0 in (1, 1.1):
+        message, listed = _refused(text(fold, x_0, (one + other) / 2 + 1e-4))
+        assert "is in doubt" in message
+        assert listed["y_0"] == pytest.approx([one, other], rel=1e-5)
+        assert _solved(text(fold, x_0, (one + other) / 2 - 1e-4))["y_0"] == pytest.approx(one)
+    # x = y = 1.379 is nearer in x alone.
+    assert list(_solved(text(SWITCH, 2.5, 0.3, a=4)).values()) == pytest.approx([2 + 3**0.5, 2 - 3**0.5])
+
+
+def test_of_several_values_each_that_is_assumed_positive_has_to_be():
+    # y + y^3 = 2 + x^3 and x + x^3 = -y^3: x < 0 < y
+    equations = ["x' + x + x^3 + y^3 = 0", "y' + y + y^3 - x^3 = 2*u"]
+    text = _text(
+        {"x_0": 0.1, "y_0": 1}, ["x", "y"], equations, {"x": "x_0", "y": "y_0", "u": "1"}, ["x_0", "y_0"]
+    )
+    message, listed = _refused(text)
+    assert "is assumed positive, but leads to" in message
+    with mpmath.workdps(20):
+        x, y = mpmath.findroot(lambda x, y: (x + x**3 + y**3, y + y**3 - x**3 - 2), (-0.6, 0.9))
+    assert (listed["x_0"] + listed["y_0"]) == pytest.approx([float(x), float(y)], rel=1e-5)
+    real = text.replace("x_0 = 0.1", 'x_0 = { value = 0.1, assume = "real" }')
+    assert _solved(real) == {"x_0": pytest.approx(float(x)), "y_0": pytest.approx(float(y))}
+
+
 def test_power_flow_is_refused_beyond_its_limit_and_solved_below():
     equations = ["T*x' = P*u - y*sin(x)/X", "T*y' = (y*cos(x) - y^2)/X - Q"]
 
