@@ -1,11 +1,13 @@
-"""How far a root moves over a box of letters, against roots of equations of first order, written by hand."""
+"""How far functions and their roots are apart, against functions of first order, written by hand."""
 
-from math import exp, inf
+from math import exp, inf, pi
 
 import pytest
 from flint import acb, arb
 
-from symflex.letters.distance import moved_over
+from symflex import pipeline
+from symflex.letters.distance import distance, moved_over, roots_of
+from symflex.transfer import bind
 
 SMALL = 1e-6
 
@@ -28,3 +30,32 @@ def test_a_root_that_may_vanish_in_the_box_has_no_bound():
     power = (0, acb(SMALL), [20])
     whole = [(1, acb(1), [0]), (0, acb(-1 - SMALL), [0]), power]
     assert moved_over(whole, [power], acb(1), [arb(0.7)]) == inf
+
+
+def function(output):
+    text = f'symflex = 1\nparameters.T = "10 ms"\ninputs.u = {{}}\noutputs.y = "{output}"'
+    return bind(*pipeline.derive_all(pipeline.loads(text)))
+
+
+def test_what_is_said_of_a_lag_that_was_left_out_ends_where_that_begins_to_show():
+    # The quotient is 1 + j w T: 10 % off at w T = 0.1, and 1 dB at w T = sqrt(10^0.1 - 1) = 0.5088.
+    before, after = function("u/((s + 1)*(T*s + 1))"), function("u/(s + 1.0001)")
+    found = distance(before, after, roots_of(before, after), [0.1])
+    facts = found.facts
+    hertz = 1 / (2 * pi * 0.01)
+    low, high = facts["band_hz"]
+    assert (low, high) == (pytest.approx(0.1 / (2 * pi)), pytest.approx(10 * hertz))
+    assert 0.998 * 0.1 * hertz < facts["within_10_percent_to_hz"] < 0.1 * hertz
+    ((begin, end),) = facts["within_1_db_hz"]
+    assert begin == low
+    assert 0.998 * 0.5088 * hertz < end < 0.5089 * hertz
+    (excepted,) = facts["excepted"]
+    assert excepted == {"band_hz": [end, high], "poles_hz": [pytest.approx(hertz)], "zeros_hz": []}
+    poles = {"displacement": pytest.approx(1e-4), "spread": None, "compared": 1, "lost": 1}
+    assert facts["poles"] == poles
+    assert found.said == (
+        "poles up to 159.2 Hz: 1 moved by at most 0.011 %, 1 without a counterpart",  # 0.01 %, rounded up
+        f"error at most 10 %: 0.01592 to {facts['within_10_percent_to_hz']:.4g} Hz",
+        f"magnitude within 1 dB: 0.01592 to {end:.4g} Hz",
+        f"excepted: {end:.4g} to 159.2 Hz, poles at 15.92 Hz",
+    )

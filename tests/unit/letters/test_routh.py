@@ -221,3 +221,8 @@ def test_json_and_latex_say_the_same():
     document = json.loads(json.dumps(found.to_json_dict()))
     assert document["conditions"] == [{"condition": "T_1 + T_2 > K*T_1*T_2", "terms": 3}]
     assert "T_{1} + T_{2} &> K T_{1} T_{2}" in found.latex()
+    assert str(found).split("\n    ") == [
+        "poles: all in the open left half-plane exactly when",
+        "T_1 + T_2 > K*T_1*T_2",
+        "for positive values of all letters",
+    ]
