@@ -35,6 +35,7 @@ from symflex.loops.boxes import CharacteristicFunction, Ends, FirstOrder, Piece,
 from symflex.loops.patches import ROOM, ULP, Bound, Patch, patch
 from symflex.loops.stability_map import PoleCount
 from symflex.roots.functions.kernel_function import KernelFunction
+from symflex.roots.functions.reversal import is_reversed
 from symflex.roots.root import exact_fraction
 
 WAVES = 10.0  # largest argument of a kernel up to which poles are counted if no frequency is given
@@ -178,7 +179,8 @@ class PolesUpTo:
     @cached_property
     def _are_even(self) -> list[bool]:
         """Whether roots of each are proved to mirror each other in the axis, whatever the value."""
-        return [part.is_even for part in self._parts]
+        parts = self._parts
+        return [f.is_even or (f.is_real and is_reversed(f.part, f.bound.kernels)) for f in parts]
 
     def narrowed(self, part: OpenPart) -> OpenPart | Open[OpenPart]:
         """Return the part with a circle if poles stay where they are, else what the axis still has open."""
@@ -402,6 +404,8 @@ class PolesUpTo:
 
             room = WIDENED * (piece[1] - piece[0])
             around = ball(piece[0] - room).union(ball(piece[1] + room))
+            if around.contains(0):
+                return None  # poles that meet at 0 are real on one side
             first = newton(around)
             if not (first.is_finite() and around.contains(first)):
                 return None

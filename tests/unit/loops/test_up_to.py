@@ -4,7 +4,7 @@ Expected values: roots of 4 x 4 determinants of exponentials with mpmath, 30 dig
 two poles meet on the axis. Beck (1952), Gregory and Paidoussis (1966), Bolotin (1963), Euler (1744).
 """
 
-from math import pi
+from math import pi, sqrt
 
 import numpy as np
 import pytest
@@ -50,6 +50,18 @@ outputs = { Y = "w'(L)" }
 domain = ["0", "L"]
 equation = "D*w'''' + q*w' + m*s^2*w = 0"
 conditions = ["w(0) = 0", "w''(0) = 0", "w(L) = 0", "D*w''(L) = M"]
+"""
+
+
+BELT = """
+symflex = 1
+parameters = { EI = 1, N = 1, rho = 1, L = 1, v = 2 }
+inputs = { M = {} }
+outputs = { Y = "w'(L)" }
+[fields.w]
+domain = ["0", "L"]
+equation = "EI*w'''' - (N - rho*v^2)*w'' + 2*rho*v*s*w' + rho*s^2*w = 0"
+conditions = ["w(0) = 0", "w''(0) = 0", "w(L) = 0", "EI*w''(L) = M"]
 """
 
 
@@ -109,6 +121,15 @@ def test_a_column_under_a_dead_load_buckles_at_a_quarter_of_pi_squared():
     assert abs(float(boundary.gain.mid()) - pi**2 / 4) < 1e-11
     assert [float(w.mid()) for w in boundary.frequencies] == [0]
     assert [(i.poles.right, i.poles.axis) for i in found.proved.intervals] == [(0, 2), (1, 0)]
+
+
+def test_a_belt_that_moves_buckles_where_its_stiffness_is_spent():
+    # rho v^2 = N + EI pi^2/l^2. Its poles are on the axis below, as waves turn round with s.
+    found = loads(BELT).stability(over="v", limits=(3.2, 3.4), up_to_hz=1, digits=10)
+    (boundary,) = found.proved.boundaries
+    assert abs(float(boundary.gain.mid()) - sqrt(1 + pi**2)) < 1e-10
+    assert [float(w.mid()) for w in boundary.frequencies] == [0]
+    assert [i.poles.word for i in found.proved.intervals] == ["marginal", "unstable"]
 
 
 def test_up_to_a_frequency_a_chart_is_refused():

@@ -1,0 +1,54 @@
+"""Waves that turn round with s: beside values of determinants at s and -s, in doubles by numpy."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from symflex.algebra import Factored
+from symflex.loops.over import characteristic
+from symflex.pipeline import loads
+from symflex.roots.functions.reversal import is_reversed
+
+MOVING = """
+symflex = 1
+parameters = {{ v = 2 }}
+inputs = {{ M = {{}} }}
+outputs = {{ Y = "w'(1)" }}
+[fields.w]
+domain = ["0", "1"]
+equation = "w'''' + v^2*w'' + {odd}*w' + s^2*w = 0"
+conditions = ["w(0) = 0", {start}, {end}, "w''(1) = M"]
+"""
+PINNED, CLAMPED, FREE = "\"w''(0) = 0\"", '"w\'(0) = 0"', "\"w'''(1) = 0\""
+HELD = '"w(1) = 0"'
+
+
+def determinant(s, v, odd, orders):
+    """Return that of the conditions, apart from a factor that is even in s, of exponentials."""
+    roots = np.roots([1, 0, v**2, odd, s**2])
+    rows = [[x**k * np.exp(x * at) for x in roots] for k, at in orders]
+    differences = [a - b for i, a in enumerate(roots) for b in roots[:i]]
+    return np.linalg.det(rows) / np.prod(differences)
+
+
+@pytest.mark.parametrize(
+    ("odd", "start", "end", "orders"),
+    [
+        ("2*v*s", PINNED, HELD, ((0, 0), (2, 0), (0, 1), (2, 1))),
+        ("2*v*s", CLAMPED, HELD, ((0, 0), (1, 0), (0, 1), (2, 1))),
+        ("2*v*s", CLAMPED, FREE, ((0, 0), (1, 0), (3, 1), (2, 1))),
+        ("2*v", PINNED, HELD, ((0, 0), (2, 0), (0, 1), (2, 1))),
+    ],
+    ids=["pinned", "clamped", "cantilever", "not odd"],
+)
+def test_what_is_reversed_has_determinants_alike_at_s_and_minus_s(odd, start, end, orders):
+    model = loads(MOVING.format(odd=odd, start=start, end=end))
+    function = characteristic(model, ("v",), ((Fraction(1), Fraction(3)),))
+    tf, factors = function.at_rest
+    found = all(is_reversed(Factored.polynomial(tf.ratio.ring, f), tf.kernels) for f in factors)
+    s, v = 1.3 + 0.7j, 1.9
+    one, other = (determinant(x, v, 2 * v * x if "s" in odd else 2 * v, orders) for x in (s, -s))
+    is_alike = min(abs(one - other), abs(one + other)) < 1e-9 * abs(one)
+    assert found == (is_alike and "s" in odd)
+    assert found == (end == HELD and "s" in odd)  # what leaves a free end takes energy along
