@@ -17,76 +17,28 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from symflex.data.measurement.column_names import (
+    BRACKETS,
+    FACTORS,
+    FREQUENCY_UNITS,
+    JOINTS,
+    KINDS,
+    LETTERS,
+    MEANINGS,
+    PARTS,
+    SCALES,
+    SPELLINGS,
+    UNIT_ENDS,
+    UNITS_IN_WORDS,
+    WORDS,
+)
 from symflex.data.measurement.text_table import bare
 from symflex.errors import Span, refused
 
 Real = npt.NDArray[np.float64]
 
-WORDS: Final = {
-    "coherence": "coherence coh gamma2 gamma^2 coherency kohärenz cohérence coherencia coerenza",
-    "phase": "phase phas phs pha phse angle ang arg argument phi φ θ θz theta zphz ph cph winkel fase fas "
-    "phasenwinkel phasengang déphasage faza фаза 相位 位相",
-    "imaginary": "im imag imaginary imaginär imaginärteil imaginaire imaginaria immaginaria zim zimag zimg "
-    "z'' zs'' quadrature 虚部",
-    "real": "re real realteil réel réelle reale zre zreal z' zs' inphase 実部 实部",
-    "power": "psd power pxx autopower",
-    "magnitude": "magnitude mag magn magnitud magnitudine gain amplitude ampl amp amplitud ampiezza abs "
-    "ganho ganancia guadagno modulus module modulo módulo level spl |h| |z| z zmod impedance imp betrag "
-    "transmissibility verstärkung pegel logmag linmag db dbspl dbv dbr амплитуда 幅值 幅度 振幅 ゲイン 利得",
-    "omega": "omega w ω angular",
-    "frequency": "frequency freq frequencies freqs frq acfrequency f hz fhz khz mhz ghz stimulus hertz "
-    "frequenz fréquence frequenza frecuencia frequência frekvens frequentie частота 频率 周波数",
-}  # fmt: skip
-"""Words by which a column is known, the first kind that has one of them."""
-KINDS: Final = {word: kind for kind, words in WORDS.items() for word in words.split()}
-_SPREAD: Final = frozenset("std stdev sd sigma err unc uncertainty var variance snr thd margin".split())
-"""Words of columns that say how accurate others are, or how far from a limit."""
-_PARTS: Final = r"gamma\^?2|[^\W\d_]+'*|\|\w\|"
-OHMS: Final = ("ohm", "ohms", "\u03c9", "\u2126")
-FREQUENCY_UNITS: Final = {
-    **dict.fromkeys(("hz", "hertz", "гц"), 1.0), "khz": 1e3, "mhz": 1e6, "ghz": 1e9,
-    **dict.fromkeys(("rad/s", "rad_s", "rads", "rad/sec", "rad/second"), 1 / (2 * np.pi)),
-}  # fmt: skip
-_DEGREES: Final = (
-    "deg", "degree", "degrees", "grad", "grados", "degrés", "gradi", "graden", "grader", "graus", "град",
-    "度", "degs", "°", "º", "ø", "*", "\ufffd",
-)  # fmt: skip
-PHASE_UNITS: Final = dict.fromkeys(_DEGREES, np.pi / 180) | dict.fromkeys(
-    ("rad", "radian", "radians", "rads"), 1.0
-)
-_LEVELS: Final = ("db", "дб", "decibel")
-UNITS: Final = frozenset((*FREQUENCY_UNITS, *PHASE_UNITS, *_LEVELS, *OHMS))
-_SPICE = re.compile(r"\bv(db|p|m|r|i)(?=\()|\bi(db|p)(?=\()|\b(p)(?=\([vi]\()|^(r|i)(?= \S+\.[vi]$)", re.I)
-_SPICE_KINDS: Final = {"db": "db", "p": "phase", "m": "mag", "r": "re", "i": "im"}
-"""Functions by which circuit simulators name columns: VDB(out), P(V(out)), r out.v."""
 LISTED = 12  # names of columns in a message; of more there are dots
-_NEGATIVE = re.compile(r"(?:-|neg(?:ative)?\b\.?|minus\b)\s*(?=\D)", re.I)
-_JOINED = re.compile(
-    r"(?<=[a-z]{3})(?=[A-Z][a-z]|dB\b)|(?<=^[GHYZ])(?=(?:re|im)(?:al|ag)?\b)|(?<=^Re|^Im)(?=[A-Z]\d*$)"
-)
-"""Where words are joined: FrequencyHz, magdB, Hreal, ImH."""
-IN_OR_OUT = re.compile(r"(?:v|u|i|signal|voltage|ch\w?)?[ _.(]*(in|out)(?:put)?\)?", re.I)
-"""Labels of what goes in and what comes out: Vin, V(out), u_in, Output."""
-OTHER_SIZE = re.compile(r"squared|(?:\||mag\w*)\s*(?:\^2|²)|^ln\b|[([]\s*(?:np|nepers?)\s*[])]", re.I)
-"""Names of squares and natural logarithms of magnitudes, which are no magnitudes."""
-_LEVEL = re.compile(r"\b[12]0\s*\*?\s*log(?:_?10)?\s*(?:db\b)?", re.I)
-"""What a level in dB is: of a power ten times its logarithm."""
-_LOGARITHM = re.compile(r"^l(?:og|g)(?:_?10)?(?![\s_]*mag)[\s_]*(?=[\W_f]|omega|freq|[wz]\b)", re.I)
-_LETTERS: Final = {
-    ("x", "y"): ("real", "imaginary"),  # of lock-in amplifiers
-    ("i", "q"): ("real", "imaginary"),
-    ("r", "x"): ("real", "imaginary"),  # of impedances
-    ("rs", "xs"): ("real", "imaginary"),
-    ("g", "b"): ("real", "imaginary"),  # of admittances
-}
-"""Letters that mean something as a pair alone."""
 _BRACKET = re.compile(r"[\[({<]\s*([^\[\](){}<>]*(?:\([^()]*\)[^\[\](){}<>]*)?)\s*[\])}>]")
-_SUFFIX = re.compile(
-    r"(?:[\s_/,:.]|\bin |(?<=\w\d)(?=d))\s*(hz|khz|mhz|ghz|rad/s|rad_s|db|deg|degrees?|rad|radians?|ohms?|"
-    r"°|º|гц|дб|grad|град)\s*$"
-    r"|(?<=\S)\s+/\s+(\S+)\s*$",
-    re.I,
-)
 LONGEST_NAME: Final = 200
 
 
@@ -125,100 +77,71 @@ def meaning_of(name: str, unit_below: str = "") -> ColumnMeaning:
     """
     if len(name) > LONGEST_NAME:
         return ColumnMeaning()
-    written = re.sub(r"(?<=z)\"(?=\W)", "''", bare(name).strip(" #*%!;:"), flags=re.I).replace("µ", "u")
+    text, marks = _spelled(name)
+    text, unit = _without_unit(text, unit_below)
+    words = re.findall(PARTS, re.sub(r"(?<=\w)\s*/\s*f(?![^\W\d_])", " ", text.lower()))  # F in X/F: a force
+    kind = next((k for k in WORDS if any(KINDS.get(w) == k for w in words)), "")
+    scale, said = "linear", {*words, *marks}
+    for row in MEANINGS:
+        kind = row.means if row.holds(text, said, _small(unit), kind) else kind
+    for row in UNITS_IN_WORDS:
+        unit = row.means if row.holds(text, said, _small(unit), kind) else unit
+    for row in SCALES:
+        scale = row.means if row.holds(text, said, _small(unit), kind) else scale
+    word = next((w for w in words if KINDS.get(w) == kind), "")
+    factor = _factor(kind, unit, word)
+    if factor and "times.-1" in marks and kind not in ("frequency", "omega", "magnitude", "power"):
+        factor = -factor
+    kind = "frequency" if kind == "omega" else kind
+    return ColumnMeaning(kind, factor, scale, _label(text, word), unit, word)
+
+
+def _factor(kind: str, unit: str, word: str) -> float | None:
+    """Return a unit in Hz or radians, ``None`` where it is none of these, and 1 for other kinds."""
+    if kind not in FACTORS:
+        return 1.0
+    small = _small(unit) or (word if word in FREQUENCY_UNITS else "")
+    return FACTORS[kind].get(unit, FACTORS[kind].get(small))
+
+
+def _small(unit: str) -> str:
+    return unit.lower().rstrip(".")
+
+
+def _spelled(name: str) -> tuple[str, list[str]]:
+    """Return a name in the usual words, and its marks."""
+    text = re.sub(r"(?<=z)\"(?=\W)", "''", bare(name).strip(" #*%!;:"), flags=re.I).replace("µ", "u")
+    marks = []
+    for row in SPELLINGS:
+        text, count = re.subn(row.pattern, row.means, text, flags=re.I)
+        marks += [row.mark] * bool(count and row.mark)
+    return text, marks
+
+
+def _without_unit(text: str, unit_below: str) -> tuple[str, str]:
+    """Return a name without its unit, and the unit, or that in a row below."""
     unit = unit_below.strip("[]<> ").replace("µ", "u")
     unit = unit[1:-1] if re.fullmatch(r"\([^()]*\)", unit) else unit
-    text, sign, is_log = _spelled(written)
-    if text.strip().lower() in PHASE_UNITS:
-        unit = text.strip()
     for bracket in _BRACKET.finditer(text):
         inside = bracket[1].strip()
-        parts = re.findall(_PARTS, inside.lower())
-        is_unit = inside.lower() in UNITS or inside == "F"  # farad
-        is_named = "_" in inside and not is_unit  # Re(A_1/F); units have no underscore
-        is_argument = re.search(r"\w$", text[: bracket.start()]) and (
-            is_named or re.fullmatch(r"/?[\w .]*(?:\([\w .,]*\))?[\w .]*", inside)
-        )
-        if (
-            is_unit
-            or ("/" in inside[1:] and not is_named)
-            or not (is_argument or unit.lower() in UNITS or any(p in KINDS for p in parts))
-        ):
+        shown, parts = f"{text[: bracket.start()][-1:]}[{inside}]", re.findall(PARTS, inside.lower())
+        if next((row.means for row in BRACKETS if row.holds(shown, parts, _small(unit))), "") == "unit":
             unit, text = inside, text.replace(bracket[0], " " * len(bracket[0]))
-    if not unit and (match := _SUFFIX.search(text)):
-        unit, text = match[1] or match[2], text[: match.start()]
-    if not unit and (match := re.match(r"deg(?=[:(])", text, re.I)):
-        unit, text = match[0], text[match.end() :]
-    low = re.sub(r"in[-_]phase", "inphase", text.lower())
-    words = re.findall(_PARTS, re.sub(r"(?<=\w)\s*/\s*f(?![^\W\d_])", " ", low))  # F in X/F is a force
-    kind = next((k for k in WORDS if any(KINDS.get(w) == k for w in words)), "")
-    if not kind and unit:
-        is_size = unit.lower() in _LEVELS or (unit.lower() in OHMS and low.startswith("z"))
-        is_phase = unit.lower() in (*_DEGREES[:-2], low)
-        is_frequency = unit.lower() in FREQUENCY_UNITS
-        kind = "magnitude" if is_size else "frequency" if is_frequency else "phase" if is_phase else ""
-    kind, unit = ("magnitude", text.strip()) if not kind and text.strip().lower() in OHMS else (kind, unit)
-    if unit.lower() in FREQUENCY_UNITS and {"frequency", "freq"} & set(words):
-        kind = "frequency"  # "Frequency - Phase (Hz)", beside the phase
-    if kind == "phase" and unit.lower() not in PHASE_UNITS and set(_DEGREES) & set(words):
-        unit = "deg"
-    is_of_other = kind in ("frequency", "omega") and (
-        {"response", "function", "ln"} & set(words) or re.search(r"\b[fwω]\s*/\s*[fwω]", low)
-    )
-    is_other_size = kind == "magnitude" and unit.lower() not in _LEVELS and OTHER_SIZE.search(written)
-    kind = "" if is_of_other or is_other_size or _SPREAD & set(words) else kind
-    word = next((w for w in words if KINDS.get(w) == kind), "")
+    ends = (re.search(row.pattern, text, re.I) for row in UNIT_ENDS)
+    end = None if unit else next(filter(None, ends), None)
+    return (text[: end.start()] + text[end.end() :], end[1]) if end else (text, unit)
+
+
+def _label(text: str, word: str) -> str:
+    """Return what is left of a name without the words that say its kind."""
 
     def kept(match: re.Match[str]) -> str:
         part = match[0].lower()
         return "" if part == word or (len(part) > 1 and part in KINDS) else match[0]
 
-    label = " ".join(re.sub(_PARTS, kept, text).split())
+    label = " ".join(re.sub(PARTS, kept, text).split())
     label = re.sub(r"[(\[]\W*[)\]]", "", label).strip(" :;,.-_'|")
-    label = label[1:-1] if re.fullmatch(r"\([^()]*\)", label) else label
-    if not kind and IN_OR_OUT.fullmatch(label):
-        kind = "magnitude"
-    if kind in ("magnitude", "power") and not unit:
-        unit = "dB" if "db" in words else "lin" if {"abs", "lin", "linear"} & set(words) else ""
-    meaning = ColumnMeaning(kind, label=label, unit=unit, word=word)
-    return _with_unit(meaning, unit, sign, is_log or (kind != "magnitude" and "log" in words))
-
-
-def _spelled(written: str) -> tuple[str, float, bool]:
-    """Return a name in the usual words, without the sign before it and whether it is a logarithm."""
-    text = re.sub(
-        r"\bdb\s+re\b[^)\]]*", "dB", written.replace("\u2220", "phase ").replace("Â°", "°"), flags=re.I
-    )
-    text = re.sub(r"\|([^|hz]|[^|]{2,})\|", r"mag \1", text, flags=re.I)
-    text = _SPICE.sub(lambda m: _SPICE_KINDS[(m[1] or m[2] or m[3] or m[4]).lower()], text)
-    text = re.sub(
-        r"^(l\w+)\s*\(\s*([^()/]+)/([^()/]+)\)",
-        r"\1 \2 [\3]",
-        _LEVEL.sub(lambda m: "power " * (m[0][0] == "1") + "dB", text),
-        flags=re.I,
-    )
-    is_log = bool(_LOGARITHM.match(text))
-    text = _LOGARITHM.sub("", text)
-    sign = -1.0 if _NEGATIVE.match(text) else 1.0
-    text = _NEGATIVE.sub("", text, count=1) if sign < 0 else text
-    return text, sign, is_log
-
-
-def _with_unit(column: ColumnMeaning, unit: str, sign: float, is_log: bool) -> ColumnMeaning:
-    small = unit.lower().rstrip(".")
-    if column.kind in ("frequency", "omega"):
-        own = "rad/s" if column.kind == "omega" else column.word if column.word in FREQUENCY_UNITS else ""
-        is_angular = small == "rad" or (column.kind == "omega" and small in ("1/s", "s^-1"))
-        factor = 1e-3 if unit == "mHz" else FREQUENCY_UNITS.get("rad/s" if is_angular else small or own)
-        return replace(column, kind="frequency", factor=factor, scale="logarithm" if is_log else "linear")
-    if column.kind == "phase":
-        factor = PHASE_UNITS.get(small)
-        return replace(column, factor=None if factor is None else sign * factor)
-    if column.kind in ("magnitude", "power"):
-        is_level = small.startswith(_LEVELS) or column.word.startswith(("db", "logmag", "spl"))
-        plain = "logarithm" if is_log else "unknown" if small in ("", "-") else "linear"
-        return replace(column, scale="decibel" if is_level else plain)
-    return replace(column, factor=sign)
+    return label[1:-1] if re.fullmatch(r"\([^()]*\)", label) else label
 
 
 def meanings_of(names: Sequence[str], units_below: Sequence[str] = ()) -> list[ColumnMeaning]:
@@ -228,32 +151,43 @@ def meanings_of(names: Sequence[str], units_below: Sequence[str] = ()) -> list[C
     ['frequency', 'real', 'imaginary']
     """
     below = list(units_below) or [""] * len(names)
-    read = [meaning_of(name, unit) for name, unit in zip(names, below, strict=True)]
-    apart = [meaning_of(_JOINED.sub(" ", name), unit) for name, unit in zip(names, below, strict=True)]
-    read = [other if other.kind and not one.kind else one for one, other in zip(read, apart, strict=True)]
+    read = []
+    for name, unit in zip(names, below, strict=True):
+        apart = name
+        for row in JOINTS:
+            apart = re.sub(row.pattern, row.means, apart)
+        as_it_is, other = meaning_of(name, unit), meaning_of(apart, unit)
+        read.append(other if other.kind and not as_it_is.kind else as_it_is)
+    read = _beside_phase(read)
     kinds = {m.kind for m in read}
-    if "phase" in kinds and "magnitude" not in kinds:  # "H1 (g/N)" beside "H1 Phase (deg)"
-        turned = {m.label for m in read if m.kind == "phase"}
-        ratios = {m.label for m in read if not m.kind and "/" in m.unit + m.label}
-        turned = ratios if turned == {""} and len(ratios) == 1 else turned - {""}  # "Receptance (m/N)"
-        for i, m in enumerate(read):
-            if not m.kind and m.label in turned and "/" in m.unit + m.label:
-                read[i] = meaning_of(f"magnitude {m.label}", m.unit)
-        kinds = {m.kind for m in read}
     if "frequency" not in kinds or {"real", "imaginary"} <= kinds or {"magnitude", "phase"} <= kinds:
         return read
     letters: dict[str, int] = {}
     for i, meaning in enumerate(read):
         if not meaning.kind and (first := re.match(r"[a-z]{1,2}\b", meaning.label, re.I)):
             letters.setdefault(first[0].lower(), i)
-    pairs = [pair for pair in _LETTERS if set(pair) <= set(letters)]
-    if "phase" in kinds and "r" in letters:
-        read[letters["r"]] = replace(meaning_of("magnitude", read[letters["r"]].unit), word="r")
-    elif len(pairs) == 1 and not any(m.word == "z" for m in read):
-        for letter, kind in zip(pairs[0], _LETTERS[pairs[0]], strict=True):
+    beside, alone = (
+        [row for row in LETTERS if {*row.pattern.split()} <= {*letters} and row.of in of]
+        for of in (kinds, (".*",))
+    )
+    for row in beside or (alone if len(alone) == 1 and not any(m.word == "z" for m in read) else ()):
+        for letter, kind in zip(row.pattern.split(), row.means.split(), strict=True):
             i = letters[letter]
-            read[i] = ColumnMeaning(kind, 1.0, unit=read[i].unit, word=letter)
+            read[i] = replace(meaning_of(kind, read[i].unit), word=letter)
     return read
+
+
+def _beside_phase(read: list[ColumnMeaning]) -> list[ColumnMeaning]:
+    """Return what columns are where "H1 (g/N)" beside "H1 Phase (deg)" is a magnitude."""
+    kinds = {m.kind for m in read}
+    if "phase" not in kinds or "magnitude" in kinds:
+        return read
+    turned = {m.label for m in read if m.kind == "phase"}
+    ratios = {m.label for m in read if not m.kind and "/" in m.unit + m.label}
+    turned = ratios if turned == {""} and len(ratios) == 1 else turned - {""}  # "Receptance (m/N)"
+    are_sizes = [not m.kind and m.label in turned and "/" in m.unit + m.label for m in read]
+    sized = [meaning_of(f"magnitude {m.label}", m.unit) for m in read]
+    return [size if is_size else m for size, is_size, m in zip(sized, are_sizes, read, strict=True)]
 
 
 def counts(numbers: npt.NDArray[Any]) -> bool:

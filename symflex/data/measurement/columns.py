@@ -19,18 +19,8 @@ from typing import Final, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from symflex.data.measurement.column_meaning import (
-    FREQUENCY_UNITS,
-    IN_OR_OUT,
-    KINDS,
-    OHMS,
-    PHASE_UNITS,
-    WORDS,
-    ColumnMeaning,
-    DataColumn,
-    counts,
-    size_of,
-)
+from symflex.data.measurement.column_meaning import ColumnMeaning, DataColumn, counts, size_of
+from symflex.data.measurement.column_names import FREQUENCY_UNITS, IN_OR_OUT, KINDS, OHMS, PHASE_UNITS
 from symflex.data.measurement.likely_readings import MOST_LISTED, UNDECIDED, ask
 from symflex.data.measurement.measured_response import MAX_ERRORS, MAX_RESPONSES, are_few, unit_of
 from symflex.data.measurement.minimum_phase import (
@@ -321,7 +311,7 @@ def _hertz(column: DataColumn, guesses: list[str]) -> Real:
         factor = FREQUENCY_UNITS["rad/s"] if is_angular else 1.0
         said = "rad/s, in which its ends are round numbers" if is_angular else "Hz"
         guesses.append(f"'{column.name[:30]}' has no unit and is read in {said}")
-    if column.meaning.word in WORDS["omega"] and column.meaning.word and not column.meaning.unit:
+    if KINDS.get(column.meaning.word) == "omega" and not column.meaning.unit:
         guesses.append(f"'{column.name[:30]}' has no unit and is read in rad/s")
     return numbers * factor
 

@@ -17,7 +17,6 @@ from typing import Final
 import numpy as np
 
 from symflex.data.measurement.column_meaning import (
-    UNITS,
     ColumnMeaning,
     DataColumn,
     columns_asked,
@@ -25,6 +24,7 @@ from symflex.data.measurement.column_meaning import (
     meaning_of,
     meanings_of,
 )
+from symflex.data.measurement.column_names import UNITS
 from symflex.data.measurement.columns import Assembled, assembled, names_of, ratio_unit
 from symflex.data.measurement.likely_readings import HINT, WITHOUT_AXIS, WITHOUT_TIME, ask
 from symflex.data.measurement.measured_response import (

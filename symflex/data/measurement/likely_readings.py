@@ -16,7 +16,8 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from symflex.data.measurement.column_meaning import OTHER_SIZE, DataColumn, counts, meaning_of, size_of
+from symflex.data.measurement.column_meaning import DataColumn, counts, meaning_of, size_of
+from symflex.data.measurement.column_names import OTHER_SIZE
 from symflex.data.measurement.minimum_phase import FEWEST_TO_DECIDE, misfit
 
 Real = npt.NDArray[np.float64]
