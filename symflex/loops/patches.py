@@ -30,7 +30,7 @@ MOST_SAMPLES = 500  # beyond which smaller discs take less
 ROOM = 1.01  # by which discs are larger than what lies in them
 RESOLVED = 20  # times the error of a patch that a bound is, if a smaller disc is worth it
 ULP = 2.0**-50  # far more than a double is off, relative to it
-ROUNDING = 1e-13  # far more than transforms and shifts lose, relative to the largest sample
+ROUNDING = 1e-13  # far more than transforms and shifts lose, relative to what they add up
 
 Function = Callable[[Sequence[acb], acb], list[acb]]  # its values at several s, for one parameter
 Coefficients = npt.NDArray[np.complex128]
@@ -110,8 +110,10 @@ def patch(function: Function, centre: complex, radius: float, middle: float, hal
         values = np.array([[complex(x.mid()) for x in row] for row in table]).T
     if not np.isfinite(values).all() or not blur < inf:
         return None
-    noise = samples * (blur + ROUNDING * float(np.abs(values).max()))
     coefficients = np.fft.fft2(values) / samples
+    # A shift by up to 1 adds up binomials of coefficients.
+    spread = np.abs(coefficients) * 2.0 ** np.add.outer(np.arange(rows), np.arange(columns))
+    noise = samples * (blur + ROUNDING * float(np.abs(values).max())) + ROUNDING * float(spread.sum())
     return Patch(centre, radius, middle, half, coefficients, error + noise, error + rows * noise)
 
 

@@ -46,7 +46,7 @@ SHORTEST = 1e-9  # share of a path that is not halved where poles are counted
 MOST_OPEN = 48  # pieces left open after which others stay as they are: halves of the part leave fewer
 SPARE = 20  # bits by which pieces of the axis that are not halved are wider than the precision
 DEEPEST = 6  # halvings of the range until a patch has to serve
-WIDENED = 2  # widths by which places on the axis are widened to prove that one pair meets there
+WIDENED = 64  # widths by which places on the axis are widened to prove that one pair meets there
 STEPS, SHARE = 40, 0.9  # of Newton's method, each of which leaves less than this share
 
 
