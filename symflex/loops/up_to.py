@@ -26,7 +26,7 @@ from typing import Literal
 
 from flint import acb, acb_series, arb, fmpz_mpoly
 
-from symflex.algebra import Factored
+from symflex.algebra import LAPLACE, Factored
 from symflex.balls import UndecidedError, at_centre, ball, branch, covered, narrowed, precision
 from symflex.balls.branching import Branching, Open
 from symflex.budget import spend
@@ -313,7 +313,9 @@ class PolesUpTo:
 
     def count(self, at: Fraction, circle: Fraction) -> PoleCount | None:
         """Return how many poles lie on the right and on the axis for one value; None if it is not proved."""
-        total, values = PoleCount(0, 0), self._on((at, at))
+        tf, _ = self.function.at_rest
+        at_rest = tf.den.exponent_of(tf.ratio.ring.generator(LAPLACE))  # powers of s beside the factors
+        total, values = PoleCount(0, at_rest), self._on((at, at))
         with suppress(UndecidedError):
             for factor, (_, exponent) in enumerate(self._factors):
                 own = self._count(values, factor, circle)

@@ -156,3 +156,24 @@ def test_loss_takes_half_of_the_critical_load_of_a_column():
 def test_a_panel_flutters_where_its_two_lowest_poles_meet():
     found = loads(PANEL).stability(over="q", limits=(100, 500), up_to_hz=15)
     the_boundary(found, 343.3564262798, 32.4315638843160, 2)
+
+
+def test_a_pole_at_rest_is_counted_beside_the_waves():
+    model = loads(
+        """symflex = 1
+        parameters = { l = "1 m" }
+        [elements]
+        wall = { type = "fixed", at = "a" }
+        arm = { type = "beam", between = ["a", "b"], EI = "100 N*m^2", rhoA = "1 kg/m", l = "l" }
+        push = { type = "force_source", at = "b.y", f = "u" }
+        [signals]
+        u = "F/s"
+        [inputs]
+        F = { unit = "N/s" }
+        [outputs]
+        Y = "b.y"
+        """
+    )
+    found = model.stability(over="l", limits=(0.9, 1.1), up_to_hz=10, digits=10)
+    # By hand: 0, and one pair, 3.5160 sqrt(EI/rhoA)/l^2 = 5.6 Hz; the next one is above 29 Hz.
+    assert [(each.poles.right, each.poles.axis) for each in found.proved.intervals] == [(0, 3)]
