@@ -103,7 +103,7 @@ SPELLINGS: Final = (
     NameRow("dB", rf"\b2{_LOG}", "20log10(H1)", "magnitude of H1 in dB, decibel", "scripts"),
     NameRow(r"\1 \2 [\3]", r"^(l\w+)\s*\(\s*([^()/]+)/([^()/]+)\)", "log(|Z|/Ohm)",
             "magnitude in Ohm, logarithm", "potentiostats"),
-    NameRow("", r"^l(?:og|g)(?:_?10)?(?![\s_]*mag)[\s_]*(?=[\W_f]|omega|freq|[wz]\b)", "log f",
+    NameRow("", r"^l(?:og|g)(?:_?10)?(?![\s_]*mag)[\s_]*(?=[\W_f]|omega|[wz]\b)", "log f",
             "frequency times ?, logarithm", "potentiostats", mark="log.10"),
     NameRow("", r"^(?:-|neg(?:ative)?\b\.?|minus\b)\s*(?=\D)", "-Im(Z)", "imaginary of Z times -1",
             "potentiostats", mark="times.-1"),
@@ -153,10 +153,10 @@ MEANINGS: Final = (
 """What a name of a kind is by its words and its unit, one row after the other."""
 UNITS_IN_WORDS: Final = (
     NameRow("deg", "", "deg of phase", "phase of deg of in deg times 0.01745", "scripts", of="phase",
-            words=" ".join(_DEGREES), unit=rf"(?!{_RAD}$).*"),
+            words=" ".join(filter(str.isalpha, _DEGREES)), unit=rf"(?!{_RAD}$).*"),
     NameRow("dB", "", "db(H1)", "magnitude of H1 in dB, decibel", "analysers", of=_SIZES, words="db",
             unit=""),
-    NameRow("lin", "", "abs(H1)", "magnitude of H1 in lin", "analysers", of=_SIZES, words="abs lin linear",
+    NameRow("lin", "", "Lin Mag", "magnitude of Lin in lin", "analysers", of=_SIZES, words="abs lin linear",
             unit=""),
 )  # fmt: skip
 """The unit of a name without one, one row after the other."""

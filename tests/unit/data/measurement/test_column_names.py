@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -59,6 +61,16 @@ def test_every_word_and_unit_is_read(monkeypatch):
             assert column_meaning.meaning_of(f"{title} [{unit}]").factor == factor, (title, unit)
 
 
+def test_every_word_of_a_row_is_read_alike():
+    for table, what in (("MEANINGS", "kind"), ("UNITS_IN_WORDS", "unit"), ("SCALES", "scale")):
+        for row in TABLES[table]:
+            words = row.words.split()
+            used = [word for word in words if re.search(rf"\b{word}\b", row.example, re.I)]
+            for word in words if used else ():
+                name = re.sub(rf"\b{used[0]}\b", word, row.example, flags=re.I)
+                assert getattr(column_meaning.meaning_of(name), what) == row.means, (name, row)
+
+
 NAMES = {
     "CH1 in-phase (V)": "real of CH1 in V",
     "Vin_phase (rad)": "phase of Vin in rad",
@@ -71,6 +83,60 @@ NAMES = {
     "-Phase (rad)": "phase in rad times -1",
     "Trace 1: Gain: Magnitude (dB)": "magnitude of Trace 1 in dB, decibel",
     "X/F": "nothing of X/F",
+    "Phase below Hz": "phase in Hz times ?",
+    "Frequency real": "real",
+    "Magnitude response (V)": "magnitude of response in V",
+    "Transfer function (Hz)": "nothing of Transfer function in Hz",
+    "Response omega": "nothing of Response",
+    "Z'' (Ohm)": "imaginary in Ohm",
+    "S21 (Ohm)": "nothing of S21 in Ohm",
+    "x (rad)": "nothing of x in rad",
+    "[V]": "nothing in V",
+    "Real (deg)": "real in deg",
+    "Real (Np)": "real in Np",
+    "Output (deg)": "phase of Output in deg times 0.01745",
+    "signal in (V)": "magnitude of signal in in V",
+    "Output (V)": "magnitude of Output in V",
+    "|H1|^2 (dB)": "magnitude of H1^2 in dB, decibel",
+    "|H1|²": "nothing of H1²",
+    "ln Amplitude": "nothing of ln",
+    "PSD": "power, unknown",
+    "log(Pxx)": "power, logarithm",
+    "lg S": "nothing of S",
+    "lg f": "frequency times ?, logarithm",
+    "Coherence log": "coherence of log",
+    "20log10(Coherence)": "coherence",
+    "-Mag (dB)": "magnitude in dB, decibel",
+    "neg Real": "real times -1",
+    "minus Real": "real times -1",
+    "P(V(out))": "phase of (V(out)) times ?",
+    "Level dB below V": "magnitude in V, decibel",
+    "abs (dB)": "magnitude in dB, decibel",
+    "abs (V)": "magnitude in V",
+    "logomega": "frequency times 0.1592, logarithm",
+    "logfreq": "frequency times ?, logarithm",
+    "logw": "frequency times 0.1592, logarithm",
+    "omega log (rad/s)": "frequency of log in rad/s times 0.1592, logarithm",
+    "PSD log": "power of log, logarithm",
+    "abs PSD": "power in lin",
+    "Lin Coherence": "coherence of Lin",
+    "deg Real": "real of deg",
+    "deg phase (rad)": "phase of deg in rad",
+    "omega w/w0": "nothing of w/w0",
+    "Mag f/f0": "magnitude of f/f0, unknown",
+    "ln w": "nothing of ln w",
+    "Phase ln f": "phase of ln f times ?",
+    "[rads]": "frequency in rads times 0.1592",
+    "|Y| (S)": "magnitude of Y in S",
+    "Mag^2 (V)": "nothing of ^2 in V",
+    "|H1| [nepers]": "nothing of H1 in nepers",
+    "u_in (V)": "magnitude of u_in in V",
+    "I(in) (A)": "magnitude of I(in) in A",
+    "Voltage out (V)": "magnitude of Voltage out in V",
+    "CH1 out (V)": "magnitude of CH1 out in V",
+    "magdB": "magnitude in dB, decibel",
+    "Himag": "imaginary of H",
+    "Yim": "imaginary of Y",
     "f (mHz)": "frequency in mHz times 0.001",
     "f (MHz)": "frequency in MHz times 1e+06",
     "omega (1/s)": f"frequency in 1/s times {1 / (2 * np.pi):.4g}",
