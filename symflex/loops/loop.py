@@ -147,6 +147,8 @@ def gain_generators(tf: TransferFunction, gain: str) -> frozenset[str]:
 def no_loop(code: str, message: str, gain: ModelParameter) -> ModelError:
     """Return what says that a parameter is no gain, and how its poles are followed all the same."""
     hint = f"follow its poles by value: symflex sweep FILE --over {gain.name}=FROM:TO:lin:20"
+    if code == "SF801":
+        hint = f"ask for its stable values: symflex stability FILE --over {gain.name}; or {hint}"
     return ModelError(Diagnostic(code, message, gain.span, hint))
 
 
