@@ -165,6 +165,15 @@ def test_another_solution_brings_doubt_where_no_unknown_is_farther_from_its_decl
     assert list(_solved(text(SWITCH, 2.5, 0.3, a=4)).values()) == pytest.approx([2 + 3**0.5, 2 - 3**0.5])
 
 
+def test_a_formula_of_one_value_is_put_into_the_equations_of_others():
+    # y = 2 x and x^3 - 5 x + y = 0.1: x turns at 1, and for a y that stays it would at 1.29.
+    equations = ["x' + x^3 - 5*x + y = 0.1*u", "y' + y = 2*x"]
+    rest = {"x": "x_0", "y": "y_0", "u": "1"}
+    text = _text({"x_0": 1.1, "y_0": 2}, ["x", "y"], equations, rest, ["x_0", "y_0"])
+    x = max(np.roots([1, 0, -3, -0.1]).real)
+    assert _solved(text) == {"x_0": pytest.approx(x), "y_0": pytest.approx(2 * x)}
+
+
 def test_of_several_values_each_that_is_assumed_positive_has_to_be():
     # y + y^3 = 2 + x^3 and x + x^3 = -y^3: x < 0 < y
     equations = ["x' + x + x^3 + y^3 = 0", "y' + y + y^3 - x^3 = 2*u"]
@@ -292,6 +301,9 @@ def test_an_equation_that_holds_for_every_value_leaves_it_to_another():
 def test_what_has_no_declared_value_and_no_formula_is_refused_with_what_is_found():
     text = _text({}, ["x"], ["x' + x + x^3 = u"], {"u": "10"}, ["x"])
     assert _refused(text)[1]["x_0"] == [pytest.approx(2)]
+    text = _text({"k": 2}, ["x"], ["x' + k*x + x^3 = u"], {"u": "3"}, ["x"])
+    assert _refused(text)[0].endswith("no value is declared; found: x_0 = 1")
+    assert _refused(text.replace("k = 2", "k = {}"))[0].endswith("no value is declared")
 
 
 FORMULAS = {  # equation, value of u, solution for x
