@@ -256,10 +256,22 @@ def test_a_square_that_is_solved_for_is_not_followed_to_where_it_is_negative():
     with pytest.raises(ModelError, match="would not follow it"):
         load(text).stability(over="F_0")
     assert load(text).stability(over="x_0").certified
-    with pytest.raises(SpecError, match="has no value at the operating point"):
+    with pytest.raises(SpecError, match="has no value at the operating point") as refused:
         loads(text.replace("F_0 = 0.2", "F_0 = 0.6"))
+    assert refused.value.diagnostics[0].hint == "correct the values of parameters"
     # In letters the poles are on the axis for F > m g, where i_0 is imaginary: the condition says that.
     assert str(conditions(loads(text))).endswith("where i_0 = sqrt(-(-m*g + F_0)*x_0^2/C) is real")
+
+
+@pytest.mark.parametrize(
+    ("value", "hint"), [("tank_O", "did you mean 'tank_0'?"), ("2*x", "known names: tank_0, u_0")]
+)
+def test_values_at_rest_that_are_no_constants_are_refused_at_their_place(value, hint):
+    with pytest.raises(SpecError, match="values at rest are constant") as refused:
+        loads(_text({"tank_0": 2}, ["x"], ["x' + x^2 = u"], {"x": value, "u": 4}, []))
+    (problem,) = refused.value.diagnostics
+    assert (problem.code, problem.hint) == ("SF210", hint)
+    assert problem.span is not None
 
 
 def test_formulas_have_what_a_function_is_at_rest_in_its_place():
