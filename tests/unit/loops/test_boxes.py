@@ -1,11 +1,87 @@
-"""Where sums of intervals may vanish, by geometry."""
+"""Boxes about ``s^2 + b s + 1 + c``, which has a root on the axis where b = 0; and geometry of sums."""
 
+from fractions import Fraction
+from itertools import pairwise, product
 from math import inf
 
 import pytest
 from flint import acb, arb
 
 from symflex.loops.boxes import share_taken
+from symflex.loops.over import characteristic
+from symflex.pipeline import loads
+
+
+def function(*names):
+    parameters = "".join(f'parameters.{n} = {{ value = 0.1, assume = "real" }}\n' for n in names)
+    signal = 'signals.y = "r/(s^2 + b*s + 1 + c)"' if "c" in names else 'signals.y = "r/(s^2 + b*s + 1)"'
+    model = loads(f'symflex = 1\n{parameters}{signal}\ninputs.r = {{}}\noutputs.Y = "y"')
+    return characteristic(model, names, ((Fraction(-1), Fraction(1)),) * len(names))
+
+
+def box(*ends):
+    return tuple((Fraction(low), Fraction(high)) for low, high in ends)
+
+
+def test_values_and_slopes_are_those_in_the_middle_and_reach_every_corner():
+    first = function("b", "c").expanded(box((-1, 3), (0, 1)))
+    # b = 1 and c = 1/2: s^2 + s + 3/2 at 2j; slopes s and 1, half ranges 2 and 1/2.
+    ((value, slopes),) = first.at(acb(0, 2), [0])
+    assert value == acb(-2.5, 2)
+    assert slopes == [acb(0, 2), acb(1)]
+    ((value, swings),) = first.swings(acb(0, 2), [0], first.generators(acb(0, 2)))
+    assert (value, swings) == (acb(-2.5, 2), [acb(0, 4), acb(0.5)])
+    ((values, slopes),) = first.around(acb(0, arb(2, 0.5)), [0])
+    for omega, b, c in product((1.5, 2.5), (-1, 3), (0, 1)):
+        assert values.contains(acb(1 + c - omega**2, b * omega))
+        assert slopes.contains(acb(b, 2 * omega))
+
+
+def test_the_axis_is_covered_up_to_where_no_root_lies():
+    whole = function("b").whole(box((-1, 1)))
+    (pieces,) = whole.pieces
+    assert 1 <= whole.radius < 4  # all roots have the size 1
+    assert (pieces[0][0], pieces[-1][1]) == (0, whole.radius)
+    assert all(one[1] == other[0] for one, other in pairwise(pieces))
+
+
+@pytest.mark.parametrize("ends", [(0, "1/10"), ("-1/10", 0), ("-1/100", "1/100"), (0, 1), (-1, 1)])
+def test_a_root_at_an_end_of_a_box_is_kept(ends):
+    own = function("b")
+    left = own.narrowed(own.whole(box(ends)))
+    held = [i for i, (low, high) in enumerate(left.pieces[0]) if low <= 1 <= high]
+    assert held
+    low, high = box(ends)[0]
+    at = -(low + high) / (high - low)  # where b = 0 is between the ends, from -1 to 1
+    for i in held if left.lines else ():
+        middle, half = left.lines[i]
+        assert (middle + half * arb(at.numerator) / at.denominator).contains(0)
+
+
+def test_boxes_without_a_root_are_decided():
+    own = function("b")
+    for ends in ((1, 2), ("1/2", 1), (-1, "-1/2")):
+        assert own.narrowed(own.whole(box(ends))).pieces == ((),)
+
+
+def test_pieces_reach_as_far_as_roots_do_and_boxes_are_halved_across_what_moves_these():
+    own = function("b", "c")
+    left = own.narrowed(own.whole(box(("-1/100", "1/100"), ("-1/10", "1/10"))))
+    (pieces,) = left.pieces
+    assert 0.94 < pieces[0][0] <= 0.9**0.5
+    assert 1.1**0.5 <= pieces[-1][1] < 1.06
+    assert all(one[1] == other[0] for one, other in pairwise(pieces))
+    b, c = left.weights
+    assert b < 0.1 < c
+    halves = [half.box for half in own.halves(left)]
+    assert halves == [
+        box(("-1/100", "1/100"), ("-1/10", 0)),
+        box(("-1/100", "1/100"), (0, "1/10")),
+    ]
+    # On the axis b alone turns values across that: the line has no part of c.
+    for _, of_b, of_c in left.lines:
+        assert abs(of_b) > 0.004
+        assert abs(of_c) < 1e-3
 
 
 @pytest.mark.parametrize(
