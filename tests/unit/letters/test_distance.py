@@ -12,12 +12,14 @@ from symflex.transfer import bind
 SMALL = 1e-6
 
 
+@pytest.mark.parametrize("turned", [0, 1, 3])
 @pytest.mark.parametrize("half", [0.1, 0.5, 0.6])
-def test_the_bound_of_a_moved_root_is_attained_at_a_corner_of_the_box(half):
+def test_the_bound_of_a_moved_root_is_attained_at_a_corner_of_the_box(half, turned):
     # s + e x^20 = 1 + e has its root s = 1 + e - e x^20, and 1 + e without the power. At x = exp(half) they
     # are e exp(20 half) apart, of which the first terms of the series are less than 10 % for half = 0.6.
     power = (0, acb(SMALL), [20])
-    whole = [(1, acb(1), [0]), (0, acb(-1 - SMALL), [0]), power]
+    # With x^n beside s both roots are divided by x^n.
+    whole = [(1, acb(1), [turned]), (0, acb(-1 - SMALL), [0]), power]
     halves = [arb(half), arb(0.99 * half, 0.01 * half)]  # the farthest end of a ball counts
     bounds = [moved_over(whole, [power], acb(1), [each]) for each in halves]
     moved = SMALL * exp(20 * half)
@@ -53,9 +55,28 @@ def test_what_is_said_of_a_lag_that_was_left_out_ends_where_that_begins_to_show(
     assert excepted == {"band_hz": [end, high], "poles_hz": [pytest.approx(hertz)], "zeros_hz": []}
     poles = {"displacement": pytest.approx(1e-4), "spread": None, "compared": 1, "lost": 1}
     assert facts["poles"] == poles
+    assert facts["zeros"] == {"displacement": 0, "spread": None, "compared": 0, "lost": 0}
     assert found.said == (
         "poles up to 159.2 Hz: 1 moved by at most 0.011 %, 1 without a counterpart",  # 0.01 %, rounded up
         f"error at most 10 %: 0.01592 to {facts['within_10_percent_to_hz']:.4g} Hz",
         f"magnitude within 1 dB: 0.01592 to {end:.4g} Hz",
         f"excepted: {end:.4g} to 159.2 Hz, poles at 15.92 Hz",
     )
+
+
+def test_what_is_known_of_roots_over_a_spread_is_said_beside():
+    lag = function("u*(s + 3)/(T*s + 1)")
+    poles, zeros, *_ = distance(lag, lag, roots_of(lag, lag), (), (0.02, inf)).said
+    assert poles == "poles up to 159.2 Hz: 1 unchanged, over the spread by 2 %"
+    assert zeros == "zeros up to 159.2 Hz: 1 unchanged, over the spread not bounded"
+
+
+def test_a_delay_that_was_left_out_shows_from_the_frequency_at_which_it_turns_the_phase():
+    # |exp(j w T) - 1| = 2 sin(w T/2) is 0.05 at w T = 0.0500052.
+    before, after = function("u*exp(-s*T)/(s + 1)"), function("u/(s + 1)")
+    facts = distance(before, after, roots_of(after, after), [0.05]).facts
+    assert facts["within_1_db_hz"] == [facts["band_hz"]]
+    assert facts["band_hz"] == [pytest.approx(0.1 / (2 * pi)), pytest.approx(10 / (2 * pi))]
+    least = 0.0500052 / (2 * pi * 0.01)
+    assert 0.998 * least < facts["within_5_percent_to_hz"] < least
+    assert facts["excepted"] == []
