@@ -6,6 +6,7 @@ from itertools import pairwise
 import pytest
 from flint import acb, arb, arb_series
 
+from symflex.loops import two_unknowns
 from symflex.loops.two_unknowns import DEEPEST, SHORT, GainTree, PartsAlong, find_axis_points, left
 
 
@@ -99,3 +100,14 @@ def test_pieces_are_short_where_weights_have_no_bound():
     assert [piece.depth for piece in pieces] == [DEEPEST, *range(DEEPEST, SHORT, -1), *[SHORT] * 63]
     assert all(one.ends[1] == other.ends[0] for one, other in pairwise(pieces))
     assert (pieces[0].ends[0], pieces[-1].ends[1]) == (0, 4)
+
+
+def test_a_search_ends_where_it_would_look_at_too_many_pieces(monkeypatch):
+    # Every gain belongs to a sum that is 0.
+    monkeypatch.setattr(two_unknowns, "MOST_BOXES", 16)
+    pieces = left([tree(lambda gain: gain, 0, 4)], PartsAlong([acb(0), acb(0, arb(0, 1e-9))]))
+    assert len(pieces) in (17, 18)
+    assert (pieces[0].ends[0], pieces[-1].ends[1]) == (0, 4)
+    assert all(one.ends[1] == other.ends[0] for one, other in pairwise(pieces))
+    monkeypatch.setattr(two_unknowns, "MOST_INTERVALS", 3)
+    assert find_axis_points(Oscillator(), tree(lambda gain: gain - 1, 0, 5), (0.5, 4.1), 15) is None
