@@ -163,6 +163,8 @@ def test_conditions_of_40_models_hold_exactly_where_all_roots_lie_left_of_the_ax
         # The roots of R^2 - 9 R + 17, of discriminant 81 - 4*17 = 13, are 2.7 and 6.3; 49 - 4*13 = -3.
         ("s + R^2 - 9*R + 17", ["R^2 + 17 > 9*R"]),
         ("s + R^2 - 7*R + 13", []),
+        ("s + R^2 + 1", []),  # an odd power may be negative, an even one not
+        ("s + R^3 + 2", ["R^3 + 2 > 0"]),
     ],
 )
 def test_what_follows_from_signs_or_from_other_conditions_is_left_out(num, expected):
@@ -189,6 +191,14 @@ def test_a_passive_structure_needs_no_condition():
     found = model.conditions()
     assert not found.conditions
     assert found.on_axis == (("s", 2), ("m_1*m_2*s^2 + k*(m_1 + m_2)", 1))
+
+
+def test_energy_says_nothing_of_what_outputs_are_divided_by():
+    # s^3 - s^2 - 2 s + 1 has the roots 1.80, 0.45 and -1.25, though ends and determinant 2 - 1 are positive.
+    letters, elements, _, _ = MACHINES[0]
+    output = "y/(T^3*s^3 - T^2*s^2 - 2*T*s + 1)"
+    model = model_of(letters + " T", elements=elements, inputs={"F": {"force": "x"}}, outputs={"Y": output})
+    assert model.conditions().is_never
 
 
 def test_a_condition_of_more_terms_than_can_be_read_says_how_many():
@@ -221,6 +231,7 @@ def test_json_and_latex_say_the_same():
     document = json.loads(json.dumps(found.to_json_dict()))
     assert document["conditions"] == [{"condition": "T_1 + T_2 > K*T_1*T_2", "terms": 3}]
     assert "T_{1} + T_{2} &> K T_{1} T_{2}" in found.latex()
+    assert r"\begin{align*}" in found.latex()
     assert str(found).split("\n    ") == [
         "poles: all in the open left half-plane exactly when",
         "T_1 + T_2 > K*T_1*T_2",

@@ -12,10 +12,10 @@ from symflex.loops.over import characteristic
 from symflex.pipeline import loads
 
 
-def function(*names):
+def function(*names, of=None):
     parameters = "".join(f'parameters.{n} = {{ value = 0.1, assume = "real" }}\n' for n in names)
-    signal = 'signals.y = "r/(s^2 + b*s + 1 + c)"' if "c" in names else 'signals.y = "r/(s^2 + b*s + 1)"'
-    model = loads(f'symflex = 1\n{parameters}{signal}\ninputs.r = {{}}\noutputs.Y = "y"')
+    of = of or f"1/(s^2 + b*s + 1{' + c' if 'c' in names else ''})"
+    model = loads(f'symflex = 1\n{parameters}signals.y = "{of}*r"\ninputs.r = {{}}\noutputs.Y = "y"')
     return characteristic(model, names, ((Fraction(-1), Fraction(1)),) * len(names))
 
 
@@ -82,6 +82,58 @@ def test_pieces_reach_as_far_as_roots_do_and_boxes_are_halved_across_what_moves_
     for _, of_b, of_c in left.lines:
         assert abs(of_b) > 0.004
         assert abs(of_c) < 1e-3
+
+
+def test_a_box_about_which_nothing_is_known_is_halved_across_its_relatively_widest_range():
+    own = function("b", "c")
+    halves = own.halves(own.whole(box((1, 3), (1, 2))))
+    assert [half.box for half in halves] == [box((1, 2), (1, 2)), box((2, 3), (1, 2))]
+    # What stands beside the highest power counts twice: 2/3 is more than 1/2.
+    own = function("b", "c", of="1/(c*s^2 + b*s + 1)")
+    halves = own.halves(own.whole(box((1, 3), (1, 2))))
+    assert [half.box for half in halves] == [box((1, 3), (1, "3/2")), box((1, 3), ("3/2", 2))]
+
+
+def test_a_half_in_which_the_highest_power_does_not_vanish_is_bounded():
+    own = function("b", of="1/(b*s^2 + s + 1)")
+    whole = own.whole(box((-1, 3)))
+    assert not whole.is_bounded
+    one, other = own.halves(whole)
+    assert not one.is_bounded
+    assert other.is_bounded
+    assert other.pieces[0]
+
+
+def test_poles_and_zeros_have_functions_of_their_own():
+    own = function("b", of="(s^2 + b)/(s^2 + b*s + 1)")
+    at = {"zero": acb(-3.5), "pole": acb(-3, 1)}  # at s = 2j for b = 1/2
+    for kind, value in at.items():
+        first = own.of_roots(kind).expanded(box(("1/2", "1/2")))
+        assert [each for each, _ in first.at(acb(0, 2), [0])] == [value]
+    assert function("b").of_roots("zero").whole(box((0, 1))).radius == 0
+
+
+def test_what_a_root_of_a_parameter_moves_depends_on_it_and_on_nothing_else():
+    own = function("b", "c", of="c/(s^2 + sqrt(b)*s + 1)")
+    assert own.depends_on("b")
+    assert not own.depends_on("c")
+
+
+@pytest.mark.parametrize(("low", "count"), [(1, 1), (-1, 2)])
+def test_hidden_poles_are_followed_where_energy_does_not_keep_them_on_the_left(low, count):
+    model = loads("""
+        symflex = 1
+        parameters = { m = 1, k = 4, d = 0.5 }
+        inputs.F = { force = "x" }
+        outputs.X = "x"
+        [elements]
+        seen = { type = "mass", at = "x", m = "m" }
+        wall = { type = "spring", between = ["x", "ground"], k = "k" }
+        loss = { type = "damper", between = ["x", "ground"], b = "d" }
+        hidden = { type = "mass", at = "y", m = "2*m" }
+        other = { type = "spring", between = ["y", "ground"], k = "3*k" }
+        """)
+    assert len(characteristic(model, ("k",), box((low, 9))).factors) == count
 
 
 @pytest.mark.parametrize(
