@@ -34,8 +34,8 @@ def test_a_root_that_may_vanish_in_the_box_has_no_bound():
     assert moved_over(whole, [power], acb(1), [arb(0.7)]) == inf
 
 
-def function(output):
-    text = f'symflex = 1\nparameters.T = "10 ms"\ninputs.u = {{}}\noutputs.y = "{output}"'
+def function(output, more=""):
+    text = f'symflex = 1\n{more}\nparameters.T = "10 ms"\ninputs.u = {{}}\noutputs.y = "{output}"'
     return bind(*pipeline.derive_all(pipeline.loads(text)))
 
 
@@ -62,6 +62,11 @@ def test_what_is_said_of_a_lag_that_was_left_out_ends_where_that_begins_to_show(
         f"magnitude within 1 dB: 0.01592 to {end:.4g} Hz",
         f"excepted: {end:.4g} to 159.2 Hz, poles at 15.92 Hz",
     )
+
+
+def test_the_declared_band_is_compared():
+    lag = function("u/(T*s + 1)", 'analysis.band = ["2 Hz", "5 Hz"]')
+    assert distance(lag, lag, roots_of(lag, lag)).facts["band_hz"] == [2, 5]
 
 
 def test_what_is_known_of_roots_over_a_spread_is_said_beside():
