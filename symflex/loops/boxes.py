@@ -22,14 +22,14 @@ from math import inf, isfinite
 from flint import acb, acb_series, arb, fmpz_mpoly
 
 from symflex.algebra import LAPLACE, Factored
-from symflex.balls import Open, Value, at_centre, ball, branch, current_bits, precision
+from symflex.balls import Open, ball, branch, current_bits, expansion, precision
 from symflex.budget import spend
 from symflex.errors import ModelError
 from symflex.expressions import names_among
 from symflex.model import ExactValue, Model
 from symflex.roots.distributed.far_out import right_tail
-from symflex.roots.functions.exponential_values import ExponentialValues, Place, Summed, sums_of
-from symflex.roots.functions.kernel_function import KernelFactors
+from symflex.roots.functions.characteristic import Characteristic
+from symflex.roots.functions.exponential_values import Place, Summed, sums_of
 from symflex.roots.passivity import energy_proof
 from symflex.roots.pole_zero_map import WITHOUT_END
 from symflex.transfer import BoundTransferFunction, TransferFunction
@@ -369,7 +369,7 @@ class FirstOrder:
         return [ball((b - a) / 2) for a, b in self.box]
 
     @cached_property
-    def _evaluators(self) -> list[ExponentialValues | KernelFactors]:
+    def _characteristics(self) -> list[Characteristic]:
         """Those for the whole box, at its middle, and along each parameter."""
         middle = tuple(((a + b) / 2,) * 2 for a, b in self.box)
         parts = [self.box, *((*self.box[:i], *middle[i:]) for i in range(len(middle) + 1))]
@@ -378,19 +378,16 @@ class FirstOrder:
             for part, along in zip(parts, ("", "", *self.function.names), strict=True)
         )
         sums = self.function.sums(self.tf, self.polynomials)
-        if sums is None:
-            return [KernelFactors(each, self.polynomials) for each in kernels]
-        return [ExponentialValues(each, *sums) for each in kernels]
+        return [Characteristic.of(each, self.polynomials, sums) for each in kernels]
 
     def generators(self, s: acb) -> Place:
         """Return all generators to first order in s, for all s in a ball and for all parameters."""
-        return self._evaluators[0].at(acb_series([s, 1], 2))
+        return self._characteristics[0].at(expansion(s))
 
     def around(self, s: acb, ones: Sequence[int], near: Place | None = None) -> list[tuple[acb, acb]]:
         """Return values and slopes in s of some factors, for all s in a ball and for all parameters."""
-        wide, near = self._evaluators[0], near or self.generators(s)
-        values = [wide.value(i, near, wide.largest([i], near)) for i in ones]
-        return [(at_centre(value), _slope(value)) for value in values]
+        wide, near = self._characteristics[0], near or self.generators(s)
+        return [wide.first_order(i, near, wide.largest([i], near)) for i in ones]
 
     def swings(self, s: acb, ones: Sequence[int], near: Place) -> list[tuple[acb, list[acb]]]:
         """Return values at the middle of the box, and by how much every parameter's half range moves each."""
@@ -400,13 +397,13 @@ class FirstOrder:
     def at(self, s: acb, ones: Sequence[int], near: Place | None = None) -> list[tuple[acb, list[acb]]]:
         """Return values at the middle of the box and slopes in every parameter, on the branch of ``near``."""
         near = near or self.generators(s)
-        wide, middle, *others = self._evaluators
+        wide, middle, *others = self._characteristics
         centre, points = middle.at(s, near), [(each, each.at(acb_series([s, 0], 2), near)) for each in others]
         found = []
         for i in ones:
             less = wide.largest([i], near)
-            slopes = [_slope(each.value(i, at, less)) for each, at in points]
-            found.append((at_centre(middle.value(i, centre, less)), slopes))
+            slopes = [each.first_order(i, at, less)[1] for each, at in points]
+            found.append((middle.first_order(i, centre, less)[0], slopes))
         return found
 
 
@@ -440,10 +437,6 @@ def share_taken(centre: acb, terms: Sequence[acb]) -> tuple[float, list[float]]:
 def _fraction(x: arb) -> Fraction:
     mantissa, exponent = x.man_exp()
     return int(mantissa) * Fraction(2) ** int(exponent)
-
-
-def _slope(value: Value) -> acb:
-    return value[1] if isinstance(value, acb_series) else acb(0)
 
 
 def _moving(tf: TransferFunction, name: str) -> set[int]:

@@ -15,13 +15,13 @@ from fractions import Fraction
 from functools import cached_property
 from math import lcm
 
-from flint import acb, acb_series, arb, fmpz_mpoly
+from flint import acb, arb, fmpz_mpoly
 
 from symflex.algebra import Factored
-from symflex.balls import Value, expansion, precision
+from symflex.balls import expansion, precision
 from symflex.loops.axis import LoopAtOrigin, loop_at_origin
-from symflex.roots.functions.exponential_values import ExponentialValues, Summed, sums_of
-from symflex.roots.functions.kernel_function import KernelFactors
+from symflex.roots.functions.characteristic import Characteristic
+from symflex.roots.functions.exponential_values import Summed, sums_of
 from symflex.transfer import BoundTransferFunction
 
 
@@ -89,18 +89,16 @@ class LoopFunction:
         return sums_of(self.bound.ratio.ring, self.parts, self.bound.kernels)
 
     @cached_property
-    def _evaluators(self) -> dict[int, ExponentialValues | KernelFactors]:
+    def _characteristics(self) -> dict[int, Characteristic]:
         return {}
 
-    def evaluator(self, bits: int) -> ExponentialValues | KernelFactors:
-        """Return what evaluates A and B at one precision."""
-        if bits not in self._evaluators:
+    def characteristic(self, bits: int) -> Characteristic:
+        """Return all parts at one precision."""
+        if bits not in self._characteristics:
             with precision(bits):
                 kernels = self.bound.kernel_values()
-            own = self._sums
-            plain = KernelFactors(kernels, self.parts)
-            self._evaluators[bits] = plain if own is None else ExponentialValues(kernels, *own)
-        return self._evaluators[bits]
+            self._characteristics[bits] = Characteristic.of(kernels, self.parts, self._sums)
+        return self._characteristics[bits]
 
     @property
     def turn(self) -> acb:
@@ -126,12 +124,11 @@ class LoopFunction:
         """Return values, by the mean value theorem if narrower, and slopes on a ball, and in its middle."""
         with precision(bits):
             middle = s.mid()
-            sums = self.evaluator(bits)
-            around = sums.at(expansion(s))
-            centre = sums.at(expansion(middle), around)
-            which = range(len(self.parts))
-            less = sums.largest(which, centre)
-            values = [[_derivatives(sums.value(i, place, less)) for i in which] for place in (around, centre)]
+            parts, which = self.characteristic(bits), range(len(self.parts))
+            around = parts.at(expansion(s))
+            centre = parts.at(expansion(middle), around)
+            less = parts.largest(which, centre)
+            values = [[parts.first_order(i, place, less) for i in which] for place in (around, centre)]
             off, pairs = s - middle, zip(*values, strict=True)
             return [(_narrower(x[0], mid[0] + x[1] * off), x[1]) for x, mid in pairs], values[1]
 
@@ -147,17 +144,13 @@ class LoopFunction:
     def near(self, s: complex, bits: int = 96) -> tuple[complex, complex, complex, complex]:
         """Return A, A', B and B' at a point, divided alike, in doubles and without proof."""
         with precision(bits):
-            sums = self.evaluator(bits)
-            at = sums.at(expansion(acb(s.real, s.imag)))
-            less = sums.largest((0, 1), at)
-            a, b = (_derivatives(sums.value(i, at, less)) for i in (0, 1))
+            parts = self.characteristic(bits)
+            at = parts.at(expansion(acb(s.real, s.imag)))
+            less = parts.largest((0, 1), at)
+            a, b = (parts.first_order(i, at, less) for i in (0, 1))
             return complex(a[0].mid()), complex(a[1].mid()), complex(b[0].mid()), complex(b[1].mid())
 
 
 def _narrower(one: acb, other: acb) -> acb:
     is_better = not one.is_finite() or other.rad() < one.rad()
     return other if other.is_finite() and is_better else one
-
-
-def _derivatives(value: Value) -> tuple[acb, acb]:
-    return (value[0], value[1]) if isinstance(value, acb_series) else (value, acb(0))
