@@ -28,7 +28,7 @@ from symflex.errors import ModelError
 from symflex.expressions import names_among
 from symflex.model import ExactValue, Model
 from symflex.roots.distributed.far_out import right_tail
-from symflex.roots.functions.characteristic import Characteristic
+from symflex.roots.functions.characteristic import CharacteristicValues
 from symflex.roots.functions.exponential_values import Place, Summed, sums_of
 from symflex.roots.passivity import energy_proof
 from symflex.roots.pole_zero_map import WITHOUT_END
@@ -369,7 +369,7 @@ class FirstOrder:
         return [ball((b - a) / 2) for a, b in self.box]
 
     @cached_property
-    def _characteristics(self) -> list[Characteristic]:
+    def _characteristics(self) -> list[CharacteristicValues]:
         """Those for the whole box, at its middle, and along each parameter."""
         middle = tuple(((a + b) / 2,) * 2 for a, b in self.box)
         parts = [self.box, *((*self.box[:i], *middle[i:]) for i in range(len(middle) + 1))]
@@ -378,7 +378,7 @@ class FirstOrder:
             for part, along in zip(parts, ("", "", *self.function.names), strict=True)
         )
         sums = self.function.sums(self.tf, self.polynomials)
-        return [Characteristic.of(each, self.polynomials, sums) for each in kernels]
+        return [CharacteristicValues.of(each, self.polynomials, sums) for each in kernels]
 
     def generators(self, s: acb) -> Place:
         """Return all generators to first order in s, for all s in a ball and for all parameters."""

@@ -20,7 +20,7 @@ from flint import acb, arb, fmpz_mpoly
 from symflex.algebra import Factored
 from symflex.balls import expansion, precision
 from symflex.loops.axis import LoopAtOrigin, loop_at_origin
-from symflex.roots.functions.characteristic import Characteristic
+from symflex.roots.functions.characteristic import CharacteristicValues
 from symflex.roots.functions.exponential_values import Summed, sums_of
 from symflex.transfer import BoundTransferFunction
 
@@ -89,15 +89,15 @@ class LoopFunction:
         return sums_of(self.bound.ratio.ring, self.parts, self.bound.kernels)
 
     @cached_property
-    def _characteristics(self) -> dict[int, Characteristic]:
+    def _characteristics(self) -> dict[int, CharacteristicValues]:
         return {}
 
-    def characteristic(self, bits: int) -> Characteristic:
+    def characteristic(self, bits: int) -> CharacteristicValues:
         """Return all parts at one precision."""
         if bits not in self._characteristics:
             with precision(bits):
                 kernels = self.bound.kernel_values()
-            self._characteristics[bits] = Characteristic.of(kernels, self.parts, self._sums)
+            self._characteristics[bits] = CharacteristicValues.of(kernels, self.parts, self._sums)
         return self._characteristics[bits]
 
     @property

@@ -23,7 +23,7 @@ from symflex.transfer.enclose_kernels import KernelValues
 
 
 @dataclass(frozen=True, eq=False)
-class Characteristic:
+class CharacteristicValues:
     """Polynomials over a ring with kernels, at one precision."""
 
     values: ExponentialValues | KernelFactors
@@ -31,7 +31,7 @@ class Characteristic:
     @classmethod
     def of(
         cls, kernels: KernelValues, polynomials: Sequence[fmpz_mpoly], sums: Summed | None
-    ) -> Characteristic:
+    ) -> CharacteristicValues:
         """Return them as sums of exponentials, or as they stand where wavenumbers have no formula."""
         return cls(KernelFactors(kernels, polynomials) if sums is None else ExponentialValues(kernels, *sums))
 

@@ -6,7 +6,7 @@ from flint import acb, acb_series
 
 import symflex
 from symflex.balls import expansion, precision
-from symflex.roots.functions.characteristic import Characteristic
+from symflex.roots.functions.characteristic import CharacteristicValues
 from symflex.roots.functions.exponential_values import sums_of
 
 # y = exp(-s T)/(s + K): with (s + K) and exp(-s T) as the two polynomials.
@@ -27,7 +27,7 @@ def both(bound, bits=80):
     with precision(bits):
         kernels = bound.kernel_values()
         for sums in (sums_of(bound.ratio.ring, polynomials, bound.kernels), None):
-            yield Characteristic.of(kernels, polynomials, sums)
+            yield CharacteristicValues.of(kernels, polynomials, sums)
 
 
 def test_quotients_of_values_and_slopes_are_those_by_hand(delayed):
