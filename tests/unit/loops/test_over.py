@@ -11,7 +11,14 @@ from symflex import Model, load, loads
 from symflex.errors import ModelError, UsageError
 from symflex.loops.boxes import CharacteristicFunction, OpenBox
 from symflex.loops.loop import pick_gain
-from symflex.loops.over import ABOUT, characteristic, find_intervals, pair_that_crosses, with_values
+from symflex.loops.over import (
+    ABOUT,
+    characteristic,
+    find_intervals,
+    pair_that_crosses,
+    seen_pair,
+    with_values,
+)
 from tests.house.repository import ROOT
 
 LAG = Model(
@@ -211,7 +218,7 @@ def test_a_pole_that_stays_on_the_axis_is_marginal_and_boxes_leave_it_open() -> 
     ]
     halved = in_boxes(lossless.resolved, "k", (2, 8))
     assert not halved.certified
-    assert "whether poles meet the axis" in halved.reasons[0]
+    assert halved.reasons == ("it could not be decided whether poles meet the axis between 2 and 8",)
     assert not halved.stable
 
 
@@ -425,6 +432,50 @@ def test_what_is_no_chart_is_refused(over: tuple[str, str], low: float, code: st
     with pytest.raises(UsageError) as error:
         LAG.stability(over=over, ranges={"a": (low, 1)})
     assert error.value.diagnostics[0].code == code
+
+
+@pytest.mark.parametrize(
+    ("asked", "said", "hint"),
+    [
+        (
+            {"over": ("a", "T"), "up_to_hz": 2},
+            "--up-to does not apply to a chart",
+            "ask for one parameter: --over P --up-to FREQUENCY",
+        ),
+        (
+            {"over": "a", "limits": (-1, 1)},
+            "'a' is assumed not to be negative, and its range is",
+            'begin at 0, or declare assume = "real"',
+        ),
+        (
+            {"over": "a", "limits": (3, 1)},
+            "'a' needs a finite range from a smaller to a larger value",
+            "give one: --range a LO HI",
+        ),
+        ({"over": "a", "ranges": {"T": (0, 1)}}, "a range of 'T', which is not asked for with --over", None),
+    ],
+)
+def test_a_refusal_says_what_to_ask_for_instead(asked, said, hint) -> None:
+    with pytest.raises(UsageError) as error:
+        LAG.stability(**asked)
+    (problem,) = error.value.diagnostics
+    assert (problem.message, problem.hint) == (said, hint)
+
+
+def test_a_range_that_nobody_gives_is_about_the_value() -> None:
+    model = oscillator(0.5)
+    # A gain in signals may vanish, and up to ten times its value; a part has half its value to twice.
+    for name, limits in (("K", ["0", "5"]), ("m", ["4", "16"])):
+        assert model.stability(over=name).to_json_dict()["range"] == limits
+
+
+def test_poles_are_those_of_an_output_without_a_filter_if_there_is_one() -> None:
+    plain = {"body": {"type": "mass", "at": "x", "m": "m"}}
+    for outputs, seen in (({"X": "x/(T*s + 1)"}, "X"), ({"X": "x/(T*s + 1)", "V": "2*x"}, "V")):
+        model = Model(
+            parameters={"m": 2, "T": 1}, elements=plain, inputs={"F": {"force": "x"}}, outputs=outputs
+        )
+        assert seen_pair(model.resolved) == (seen, "F")
 
 
 def test_a_parameter_that_moves_no_pole_is_refused() -> None:
