@@ -82,3 +82,12 @@ def test_a_path_is_covered_by_pieces_that_touch_or_is_undecided():
     assert covered(lambda a, b: b - a, 4, 0.01) == [(k / 4, (k + 1) / 4, 0.25) for k in range(4)]
     with pytest.raises(UndecidedError):
         covered(lambda a, b: b <= 0.3 or a >= 0.3 or None, 1, 0.01)
+
+
+def test_pieces_as_short_as_allowed_are_tried_and_one_that_stays_open_ends_the_search():
+    quarters = covered(lambda a, b: b - a <= 0.25 or None, 1, 0.25)
+    assert [a for a, *_ in quarters] == [0, 0.25, 0.5, 0.75]
+    tried = []
+    with pytest.raises(UndecidedError):
+        covered(lambda a, b: tried.append(a), 8, 0.125)
+    assert tried == [0]
