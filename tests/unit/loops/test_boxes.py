@@ -119,6 +119,15 @@ def test_what_a_root_of_a_parameter_moves_depends_on_it_and_on_nothing_else():
     assert not own.depends_on("c")
 
 
+def test_slopes_go_through_roots_of_a_parameter():
+    # b sqrt(b) s changes by 3/2 sqrt(b) s: 6j for b = 4 at s = 2j.
+    first = function("b", of="1/(s^2 + b*sqrt(b)*s + 1)").expanded(box((4, 4)))
+    ((value, (slope,)),) = first.at(acb(0, 2), [0])
+    assert value.overlaps(acb(-3, 16))
+    assert slope.overlaps(acb(0, 6))
+    assert slope.rad() < 1e-12
+
+
 @pytest.mark.parametrize(("low", "count"), [(1, 1), (-1, 2)])
 def test_hidden_poles_are_followed_where_energy_does_not_keep_them_on_the_left(low, count):
     model = loads("""
