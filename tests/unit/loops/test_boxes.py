@@ -37,6 +37,14 @@ def test_values_and_slopes_are_those_in_the_middle_and_reach_every_corner():
         assert slopes.contains(acb(b, 2 * omega))
 
 
+def test_a_range_from_0_reaches_from_0_to_its_end():
+    # b s at 2j for b from 0 to 4, which is not negative
+    ((value, _),) = function("b").expanded(box((0, 4))).around(acb(0, 2), [0])
+    assert value.contains(acb(-3))
+    assert value.contains(acb(-3, 8))
+    assert value.imag.lower() > -1e-6
+
+
 def test_the_axis_is_covered_up_to_where_no_root_lies():
     whole = function("b").whole(box((-1, 1)))
     (pieces,) = whole.pieces

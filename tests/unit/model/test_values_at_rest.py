@@ -182,6 +182,7 @@ def test_of_several_values_each_that_is_assumed_positive_has_to_be():
     )
     message, listed = _refused(text)
     assert "is assumed positive, but leads to" in message
+    assert message.endswith("found elsewhere: none")
     with mpmath.workdps(20):
         x, y = mpmath.findroot(lambda x, y: (x + x**3 + y**3, y + y**3 - x**3 - 2), (-0.6, 0.9))
     assert (listed["x_0"] + listed["y_0"]) == pytest.approx([float(x), float(y)], rel=1e-5)
