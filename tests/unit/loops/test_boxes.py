@@ -66,6 +66,17 @@ def test_a_root_at_an_end_of_a_box_is_kept(ends):
         assert (middle + half * arb(at.numerator) / at.denominator).contains(0)
 
 
+def test_a_real_pole_is_at_0_where_the_line_of_its_piece_is():
+    # s + b = 0 on the axis for b = 0 alone: b/(j) has the imaginary part -b.
+    own = function("b", of="1/(s + b)")
+    left = own.narrowed(own.whole(box(("-1/100", "1/100"))))
+    (((low, high),),) = left.pieces
+    assert low == 0 < high
+    ((middle, half),) = left.lines
+    assert middle == 0
+    assert half.overlaps(arb("-0.01"))
+
+
 def test_boxes_without_a_root_are_decided():
     own = function("b")
     for ends in ((1, 2), ("1/2", 1), (-1, "-1/2")):
