@@ -165,6 +165,7 @@ def test_conditions_of_40_models_hold_exactly_where_all_roots_lie_left_of_the_ax
         ("s + R^2 - 7*R + 13", []),
         ("s + R^2 + 1", []),  # an odd power may be negative, an even one not
         ("s + R^3 + 2", ["R^3 + 2 > 0"]),
+        ("s + (R^2 - R + 1)*(R^2 + 1)", []),
     ],
 )
 def test_what_follows_from_signs_or_from_other_conditions_is_left_out(num, expected):

@@ -462,6 +462,19 @@ def test_a_refusal_says_what_to_ask_for_instead(asked, said, hint) -> None:
     assert (problem.message, problem.hint) == (said, hint)
 
 
+def test_an_angle_that_is_a_gain_has_margins() -> None:
+    # 1/(s + 1)^3 is stable up to a gain of 8, with poles at sqrt(3) rad/s; 30 degrees are pi/6.
+    model = Model(
+        parameters={"psi": "30 deg"},
+        signals={"y": "psi/(s + 1)^3*(r - y)"},
+        inputs={"r": {}},
+        outputs={"Y": "y"},
+    )
+    (margin,) = model.stability(over="psi", limits=("0 deg", "900 deg")).to_json_dict()["gain_margins"]
+    assert float(margin["factor"]["value"]) == pytest.approx(8 / (pi / 6))
+    assert margin["frequencies_hz"] == [pytest.approx(sqrt(3) / (2 * pi))]
+
+
 def test_a_range_that_nobody_gives_is_about_the_value() -> None:
     model = oscillator(0.5)
     # A gain in signals may vanish, and up to ten times its value; a part has half its value to twice.
