@@ -218,6 +218,7 @@ def test_a_pole_that_stays_on_the_axis_is_marginal_and_boxes_leave_it_open() -> 
     ]
     halved = in_boxes(lossless.resolved, "k", (2, 8))
     assert not halved.certified
+    assert not halved.is_gain
     assert halved.reasons == ("it could not be decided whether poles meet the axis between 2 and 8",)
     assert not halved.stable
 
@@ -460,6 +461,16 @@ def test_a_refusal_says_what_to_ask_for_instead(asked, said, hint) -> None:
         LAG.stability(**asked)
     (problem,) = error.value.diagnostics
     assert (problem.message, problem.hint) == (said, hint)
+
+
+def test_members_that_taper_are_refused_where_the_parameter_is_declared() -> None:
+    wedge = load(ROOT / "derivations/tapers/wedge.toml")
+    with pytest.raises(ModelError, match="not available with members that taper") as error:
+        wedge.stability(over="EI", limits=(1, 2))
+    (problem,) = error.value.diagnostics
+    (declared,) = (p.span for p in wedge.resolved.parameters if p.name == "EI")
+    assert problem.span == declared
+    assert problem.hint.endswith("symflex sweep FILE --over EI=FROM:TO:lin:20")
 
 
 def test_an_angle_that_is_a_gain_has_margins() -> None:
