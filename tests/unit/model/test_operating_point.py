@@ -8,6 +8,7 @@ import sympy
 from sympy.physics.mechanics import LagrangesMethod, dynamicsymbols
 
 from symflex import Model, loads
+from symflex.errors import SpecError
 from symflex.expressions import format_expression
 from tests.unit.refusals import refusal
 
@@ -306,6 +307,14 @@ def test_equations_without_a_linear_one_are_refused(equation):
     rest = {"x": "0", "x'": "a", "u": "a"} if "x''" in equation else {"x": "0"}
     text = _text("x", [equation], rest, [], "u", {"a": 2, "b": -1})
     assert refusal(loads, text) == f"SpecError {REFUSED[equation]}"
+
+
+def test_an_s_that_can_be_read_in_two_ways_is_shown():
+    with pytest.raises(SpecError, match="can be read in two ways") as refused:
+        loads(_text("x", ["x' + x = s*x*x^2 + u"], {"x": "0"}, [], "u", {}))
+    _, shown, marks, _ = str(refused.value).split("\n")
+    assert marks.index("^") == shown.index("s*x*x^2")
+    assert marks.count("^") == len("s*x*x^2")
 
 
 def test_what_was_solved_for_by_value_is_solved_anew_for_other_values():
