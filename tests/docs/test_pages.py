@@ -27,6 +27,7 @@ def takes_long(block):
     """Tell whether a session fits every order, sweeps models or proves what beams do in loops or in time."""
     chooses_an_order = "$ symflex fit" in block.text and "BIC" in block.text
     proves = "$ symflex stability eppinger1988" in block.text or block.text.startswith("$ symflex respond")
+    proves = proves or ("--over" in block.text and "--up-to" in block.text)
     is_long_page = block.page.name in ("roots.md", "published-formula.md", "force-loop.md", "flexible-arm.md")
     return chooses_an_order or proves or is_long_page or "$ symflex sweep" in block.text
 
