@@ -104,6 +104,7 @@ def test_a_pair_crosses_in_a_gap_where_all_is_proved_and_nothing_less() -> None:
     assert crossing("(s^2 + b*s + 1)^2") == 0  # two pairs cross together
     assert crossing("(s^2 + b*s + 1)*(s^2 - b*s + 1)") == 0  # one each way
     assert crossing("s^4 + b*s^3 + 5*s^2 + 2*b*s + 4", high=2) == 0  # two of one factor, at 1 and 2 rad/s
+    assert crossing("s^4 + 2*s^2 + 1 + b*s", high=1 + NEAR) == 0  # two meet at 1, off the middle of the piece
     assert crossing("s + b", low=0, high=0) == 0  # a real pole, not a pair
     assert crossing("s^2 + b*s + 1", 9.0, "how far roots lie is not known") == 0
 
