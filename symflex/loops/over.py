@@ -104,7 +104,9 @@ def stability_over(
         undecided = float(share_of(given.resolve, "--resolve"))
         return find_chart(function, limits, nominal, parameters, undecided)
     search = partial(find_intervals_up_to, function, limits[0], digits, parameters[0], nominal[0], up_to)
-    end = function.whole(limits).radius
+    # Of a wide range an end of the poles may not be known, and of its parts it is.
+    middle = tuple(((low + high) / 2,) * 2 for low, high in limits)
+    end = function.whole(middle).radius
     if isinstance(end, str) and end != VANISHES and PolesUpTo.serves(function):
         return exact.of_parameter if exact is not None and exact.intervals else search(end)
     halved = find_intervals(function, limits[0], digits, parameters[0], nominal[0])
