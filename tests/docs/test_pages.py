@@ -15,7 +15,15 @@ SPECIFICATIONS = [block for block in all_blocks("toml") if block.text.startswith
 SESSIONS = [block for block in all_blocks("console") if block.text.startswith("$ symflex")]
 PYTHON = [block for block in all_blocks("python") if ">>>" in block.text]
 WITH_TABLES = [p for p in pages() if any(found.search(p.read_text("utf-8")) for found in (PLACE, FORMULA))]
-LONG = ("python-api", "plane-frame", "roots", "force-loop", "move-without-vibration", "measured-machine")
+LONG = (
+    "python-api",
+    "plane-frame",
+    "roots",
+    "force-loop",
+    "move-without-vibration",
+    "measured-machine",
+    "stability",
+)
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
 
