@@ -24,6 +24,7 @@ from symflex.algebra.ring import (
     degree_in,
     expanded_length,
     irreducible_factors,
+    real_parts,
     square_free_factors,
     terms_of,
 )

@@ -219,6 +219,20 @@ def by_powers(ring: Ring, polynomial: fmpz_mpoly, generator: int = 0) -> dict[in
     return {power: part for (power,), part in coefficients_of(ring, polynomial, (generator,)).items()}
 
 
+def real_parts(ring: Ring, polynomial: fmpz_mpoly, unit: str) -> tuple[fmpz_mpoly, fmpz_mpoly]:
+    """Return g and h of ``g + j h``, j being the generator of a name, if there is one.
+
+    >>> ring = Ring(("s", "j"))
+    >>> s, j = (ring.generator(n) for n in ring.names)
+    >>> real_parts(ring, s**2 + 3 * j + j**2 - 2 * j**3, "j")
+    (s^2 - 1, 5)
+    """
+    zero = ring.constant(0)
+    parts = by_powers(ring, polynomial, ring.index[unit]) if unit in ring.index else {0: polynomial}
+    g, h = (sum((c * (-1) ** (n // 2) for n, c in parts.items() if n % 2 == odd), zero) for odd in (0, 1))
+    return g, h
+
+
 def terms_of(polynomial: fmpz_mpoly) -> list[tuple[Monomial, int]]:
     """Return the terms in lexicographic order: positions of generators with exponents, and the coefficient.
 

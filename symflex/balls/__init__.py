@@ -1,6 +1,6 @@
 """Balls: numbers that contain what is meant, and how sharp they are. Every proof stands on this package."""
 
-from symflex.balls.branching import Branching, Open, Part, branch, covered
+from symflex.balls.branching import Branching, Open, Part, branch, covered, halved
 from symflex.balls.elimination import Eliminated, columns_of, eliminate
 from symflex.balls.interval_newton import (
     NEWTON_STEPS,

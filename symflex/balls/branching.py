@@ -16,6 +16,7 @@ from __future__ import annotations
 import heapq
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
+from fractions import Fraction
 from itertools import count
 from typing import Generic, Literal, TypeVar
 
@@ -25,6 +26,7 @@ from symflex.errors import BudgetError, Diagnostic
 
 Region = TypeVar("Region")
 Decided = TypeVar("Decided")
+Number = TypeVar("Number", float, Fraction)
 Order = Literal["depth", "breadth"]
 Part = tuple[float, float]  # of a path, or of frequencies
 
@@ -128,6 +130,17 @@ def branch(
     return found
 
 
+def halved(ends: tuple[Number, Number]) -> list[tuple[Number, Number]]:
+    """Return both halves of an interval, the lower one first.
+
+    >>> halved((0.0, 3.0))
+    [(0.0, 1.5), (1.5, 3.0)]
+    """
+    low, high = ends
+    middle = (low + high) / 2
+    return [(low, middle), (middle, high)]
+
+
 def covered(
     decide: Callable[[float, float], Decided | None], parts: int, shortest: float
 ) -> list[tuple[float, float, Decided]]:
@@ -144,9 +157,7 @@ def covered(
         return Open(span) if decided is None else (*span, decided)
 
     def halves(span: Part) -> list[Part]:
-        low, high = span
-        middle = (low + high) / 2
-        return [] if high - low < 2 * shortest else [(low, middle), (middle, high)]
+        return [] if span[1] - span[0] < 2 * shortest else halved(span)
 
     whole = [(k / parts, (k + 1) / parts) for k in range(parts)]
     search = branch(whole, decided_on, halves, until=lambda found, _: bool(found.undecided))

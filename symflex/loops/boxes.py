@@ -22,7 +22,7 @@ from math import inf, isfinite
 from flint import acb, acb_series, arb, fmpz_mpoly
 
 from symflex.algebra import LAPLACE, Factored
-from symflex.balls import Open, ball, branch, current_bits, expansion, precision
+from symflex.balls import Open, ball, branch, current_bits, expansion, halved, precision
 from symflex.budget import spend
 from symflex.errors import ModelError
 from symflex.expressions import names_among
@@ -35,7 +35,7 @@ from symflex.roots.pole_zero_map import WITHOUT_END
 from symflex.transfer import BoundTransferFunction, TransferFunction
 from symflex.transfer.enclose import constant_tangent, enclosure, first_order
 from symflex.transfer.enclose_kernels import KernelValues
-from symflex.transfer.mirrored import with_image
+from symflex.transfer.mirrored import times_image
 from symflex.transfer.of_model import derive_nameless
 
 BITS = 64  # precision of values on boxes, which are far wider
@@ -275,10 +275,7 @@ class PathPiece:
 
     def parts(self) -> list[PathPiece]:
         """Return both halves, or the piece itself if it was narrowed."""
-        begin, end = self.piece
-        middle = (begin + end) / 2
-        halves = [(begin, middle), (middle, end)]
-        return [PathPiece(self.piece)] if self.is_narrowed else [PathPiece(half) for half in halves]
+        return [PathPiece(part) for part in ([self.piece] if self.is_narrowed else halved(self.piece))]
 
 
 @dataclass(frozen=True, slots=True)
@@ -460,7 +457,7 @@ def factors_of(tf: TransferFunction, given: Sequence[fmpz_mpoly] | None = None) 
     if every is None:
         every = [*(f for f, e in tf.den.factors if e > 0), *(h.polynomial for h in tf.hidden)]
     if tf.model.imaginary:  # what meets the axis below 0 has an image that meets it above
-        images = (with_image(Factored.polynomial(ring, each)).factors for each in every)
+        images = (times_image(Factored.polynomial(ring, each)).factors for each in every)
         every = [f for factors in images for f, _ in factors]
     return tuple(f for f in every if len(f) > 1 or not any(f.degrees()[i] for i in alone))
 

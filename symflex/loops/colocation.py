@@ -17,7 +17,7 @@ from math import inf
 
 from flint import acb, arb
 
-from symflex.balls import Open, Part, branch, precision
+from symflex.balls import Open, Part, branch, halved, precision
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.loops.axis import pieces
 from symflex.roots import figure
@@ -181,15 +181,10 @@ def _first_exit(state_on: Callable[[arb], tuple[int, str]], low: float, high: fl
                 return _Exit(span, after == -1, begins=True, cause=why or cause)
             return Open(ends)
 
-        def halves(ends: Part) -> list[Part]:
-            low, high = ends
-            middle = low + (high - low) / 2
-            return [(low, middle), (middle, high)]
-
         first = branch(
             pieces(start, end, START_RATIO),
             exit_on,
-            halves,
+            halved,
             most=MOST_INTERVALS,
             until=lambda found, _: bool(found.decided),
         )

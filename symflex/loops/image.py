@@ -25,7 +25,7 @@ from symflex.transfer import TransferFunction
 from symflex.transfer.mirrored import mirrored
 
 
-def with_image(tf: TransferFunction, what: str) -> TransferFunction:
+def real_product(tf: TransferFunction, what: str) -> TransferFunction:
     """Return a function times its mirror image; SF251 where its waves have complex coefficients."""
     product = mirrored(tf)
     if product is None:

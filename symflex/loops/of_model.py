@@ -14,7 +14,7 @@ from symflex.loops import loop as loop_layer
 from symflex.loops.colocation import DynamicColocation, dynamic_colocation
 from symflex.loops.find import find_stable_gains
 from symflex.loops.gain_functions import Limits
-from symflex.loops.image import function_of, with_image, without_image
+from symflex.loops.image import function_of, real_product, without_image
 from symflex.loops.locus import is_straight
 from symflex.loops.loop import Loop, pick_gain
 from symflex.loops.networks import AnyLoop, network_loop
@@ -84,7 +84,7 @@ def characteristic_loop(
             return network
         message = f"'{gain}' occurs in several places of a network that is too large to be written out"
         raise loop_layer.no_loop("SF803", message, parameter) from error
-    tf = with_image(tf, what) if prepared.imaginary else tf
+    tf = real_product(tf, what) if prepared.imaginary else tf
     return loop_layer.characteristic_loop(tf, parameter, given)
 
 

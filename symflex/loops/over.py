@@ -29,7 +29,7 @@ from symflex.expressions import names_among
 from symflex.loops.boxes import BITS, Box, CharacteristicFunction, Ends, OpenBox
 from symflex.loops.chart import StabilityChart, count_at, find_chart
 from symflex.loops.find import gain_margins
-from symflex.loops.image import with_image, without_image
+from symflex.loops.image import real_product, without_image
 from symflex.loops.loop import pick_gain
 from symflex.loops.of_model import of_rational
 from symflex.loops.stability_map import (
@@ -104,7 +104,7 @@ def stability_over(
         undecided = float(share_of(given.resolve, "--resolve"))
         return find_chart(function, limits, nominal, parameters, undecided)
     search = partial(find_intervals_up_to, function, limits[0], digits, parameters[0], nominal[0], up_to)
-    # Of a wide range an end of the poles may not be known, and of its parts it is.
+    # The poles may have no known end over a wide range, and one over its parts.
     middle = tuple(((low + high) / 2,) * 2 for low, high in limits)
     end = function.whole(middle).radius
     if isinstance(end, str) and end != VANISHES and PolesUpTo.serves(function):
@@ -148,7 +148,7 @@ def characteristic(
         prepared = observed(prepared, seen[0])
     (tf,) = derive_all(prepared, [seen])
     if prepared.imaginary:
-        with_image(tf.whole, "stability over a parameter")  # refused where there is none
+        real_product(tf.whole, "stability over a parameter")  # refused where there is none
     are_positive = all(low >= 0 for low, _ in ranges)
     return CharacteristicFunction.of(prepared, tf.whole, names, are_positive=are_positive)
 
@@ -245,20 +245,12 @@ def find_intervals(
             reasons += [verdict.reason] if count is None else []
         counted += [(part, count)] if count else []
     boundaries, intervals = _boundaries(function, counted, gaps, wide, limits, digits, reasons)
-    stability = StabilityMap(
-        parameter.name,
-        parameter.unit,
-        limits,
-        boundaries,
-        intervals,
-        nominal,
+    stability = replace(
+        _map_of(function, limits, digits, parameter, nominal),
+        boundaries=boundaries,
+        intervals=intervals,
         is_complete=bool(intervals) or not reasons,
         reasons=tuple(dict.fromkeys(reasons)),
-        digits=digits,
-        method=BOXES,
-        is_gain=False,
-        tf=function.tf.name,
-        counted_in=parameter.counted_in,
     )
     if nominal is not None and (stability.verdict.word == "unknown" or function.tf.hidden):
         stability = replace(stability, at_nominal=count_at(function, (parameter.value or nominal,))[0])
@@ -308,16 +300,29 @@ def find_intervals_up_to(
     boxes = [OpenBox((part.ends,), radius, poles.frequencies(part)) for part in gaps]
     rest = [OpenBox((ends,), radius) for ends in (*(part.ends for part in wide), *uncounted)]
     boundaries, intervals = _boundaries(function, counted, boxes, rest, limits, digits, reasons)
+    return replace(
+        _map_of(function, limits, digits, parameter, nominal),
+        boundaries=boundaries,
+        intervals=intervals,
+        radius=radius,
+        is_complete=False,
+        reasons=tuple(dict.fromkeys(reasons)),
+    )
+
+
+def _map_of(
+    function: CharacteristicFunction,
+    limits: Ends,
+    digits: int,
+    parameter: ModelParameter,
+    nominal: Fraction | None,
+) -> StabilityMap:
+    """Return the map of a parameter of which nothing is known yet."""
     return StabilityMap(
         parameter.name,
         parameter.unit,
         limits,
-        boundaries,
-        intervals,
-        nominal,
-        radius=radius,
-        is_complete=False,
-        reasons=tuple(dict.fromkeys(reasons)),
+        nominal=nominal,
         digits=digits,
         method=BOXES,
         is_gain=False,

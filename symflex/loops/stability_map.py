@@ -288,7 +288,7 @@ class StabilityMap(Printed):
 
     @property
     def gain_margins(self) -> tuple[GainMargin, ...]:
-        """By which factors the nominal gain may change, when the loop is stable there."""
+        """Factors by which the nominal gain may change until a boundary; none unless the loop is stable."""
         return self.margins.gains
 
     @property

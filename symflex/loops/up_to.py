@@ -27,8 +27,18 @@ from typing import Literal
 from flint import acb, acb_series, arb, fmpz_mpoly
 
 from symflex.algebra import LAPLACE, Factored
-from symflex.balls import UndecidedError, at_centre, ball, branch, covered, narrowed, precision
-from symflex.balls.branching import Branching, Open
+from symflex.balls import (
+    Branching,
+    Open,
+    UndecidedError,
+    at_centre,
+    ball,
+    branch,
+    covered,
+    halved,
+    narrowed,
+    precision,
+)
 from symflex.budget import spend
 from symflex.expressions import names_among
 from symflex.loops.boxes import CharacteristicFunction, Ends, FirstOrder, Piece, factors_of
@@ -61,7 +71,7 @@ class OpenPart:
     @property
     def halves(self) -> list[OpenPart]:
         """Both halves of the part."""
-        return [replace(self, ends=ends) for ends in _halves(self.ends)]
+        return [replace(self, ends=ends) for ends in halved(self.ends)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -210,7 +220,7 @@ class PolesUpTo:
         around: Ends | None = self.limits
         while around is not None:
             yield around
-            halves = _halves(around) if around != ends else []
+            halves = halved(around) if around != ends else []
             around = next((h for h in halves if h[0] <= ends[0] and ends[1] <= h[1]), None)
 
     def _on(self, ends: Ends) -> PartValues:
@@ -233,7 +243,7 @@ class PolesUpTo:
 
         def halve(piece: Piece) -> list[Piece]:
             is_short = (piece[1] - piece[0]) * 2 ** (self.bits - SPARE) < 1
-            return [] if piece in sharp or is_short else _halves(piece)
+            return [] if piece in sharp or is_short else halved(piece)
 
         search: Branching[Piece, None] = branch(
             pieces, decide, halve, until=lambda found, _: len(found.undecided) >= MOST_OPEN
@@ -248,8 +258,7 @@ class PolesUpTo:
         """Tell whether no pole meets an arc in the right half-plane for any value in a part."""
         try:
             for factor in self._moving:
-                for _ in self._without_root(values, factor, arc):
-                    pass
+                self._without_root(values, factor, arc)
         except UndecidedError:
             return False
         return True
@@ -353,8 +362,8 @@ class PolesUpTo:
             raise UndecidedError
         return ratio
 
-    def _without_root(self, values: PartValues, factor: int, path: Path) -> Iterator[Piece]:
-        """Yield pieces of a path on which a factor is proved to have no root; UndecidedError if it may."""
+    def _without_root(self, values: PartValues, factor: int, path: Path) -> list[Piece]:
+        """Return pieces of a path on which a factor is proved to have no root; UndecidedError if it may."""
         first, last = values.ends
 
         def decide(low: float, high: float) -> bool | None:
@@ -364,17 +373,17 @@ class PolesUpTo:
             return not found.may_vanish or None
 
         pieces = covered(decide, path.cells, SHORTEST)
-        return ((Fraction(low), Fraction(high)) for low, high, _ in pieces)
+        return [(Fraction(low), Fraction(high)) for low, high, _ in pieces]
 
-    def _with_one_root(self, values: PartValues, factor: int, path: Path) -> Iterator[Piece]:
-        """Yield pieces of the axis on which a factor that is real there has one simple root at most."""
+    def _with_one_root(self, values: PartValues, factor: int, path: Path) -> list[Piece]:
+        """Return pieces of the axis on which a factor that is real there has one simple root at most."""
 
         def decide(low: float, high: float) -> bool | None:
             found = self._bound(values, factor, path, (Fraction(low), Fraction(high)))
             return not (found.may_vanish and found.may_turn) or None
 
         pieces = covered(decide, path.cells, SHORTEST)
-        return ((Fraction(low), Fraction(high)) for low, high, _ in pieces)
+        return [(Fraction(low), Fraction(high)) for low, high, _ in pieces]
 
     def frequencies(self, part: OpenPart) -> tuple[tuple[Piece, ...], ...]:
         """Return the pieces of the axis in rad/s, as narrow as places where two poles meet are known."""
@@ -443,7 +452,3 @@ def _kernel_functions(
 
 def _middle(ends: Ends) -> Fraction:
     return (ends[0] + ends[1]) / 2
-
-
-def _halves(ends: Ends) -> list[Ends]:
-    return [(ends[0], _middle(ends)), (_middle(ends), ends[1])]

@@ -10,13 +10,11 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import reduce
-from operator import add
 from typing import TYPE_CHECKING
 
 from flint import fmpz_mpoly
 
-from symflex.algebra import LAPLACE, Factored, Ring, by_powers, terms_of
+from symflex.algebra import LAPLACE, Factored, Ring, real_parts, terms_of
 from symflex.errors import BudgetError, ModelError
 from symflex.expressions import (
     Attribute,
@@ -202,14 +200,7 @@ class _Leaves(ExpressionReader):
 
     def parts(self, polynomial: Factored) -> tuple[fmpz_mpoly, fmpz_mpoly]:
         """Return real and imaginary part of a polynomial in j."""
-        signed = [
-            (n % 2, part * (-1 if n % 4 > 1 else 1))
-            for n, part in by_powers(self.ring, polynomial.expand(), self.ring.index[IMAGINARY]).items()
-        ]
-        real, imaginary = (
-            reduce(add, (p for n, p in signed if n == k), self.ring.constant(0)) for k in (0, 1)
-        )
-        return real, imaginary
+        return real_parts(self.ring, polynomial.expand(), IMAGINARY)
 
     def expression(self, polynomial: fmpz_mpoly, scale: Fraction) -> Expression:
         """Return a polynomial over a number, by powers of s."""

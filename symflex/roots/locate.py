@@ -255,7 +255,7 @@ def locate_distributed(
     """Find the poles and zeros of a transfer function with kernels, to so many significant digits, proved.
 
     Roots that mirror each other count as one mode. What is certified is returned when the budget is exceeded.
-    Of a function times its mirror image those are kept that are its ``own``.
+    With ``own``, a function times its mirror image keeps the roots of the function alone.
     """
     where, is_default = _region_of(bound, region)
     searched = _Searched(bound, where, digits, with_zeros=with_zeros, own=own)

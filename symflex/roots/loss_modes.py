@@ -6,8 +6,8 @@ Output: a :class:`~symflex.roots.PoleZeroMap` of the roots with im s >= 0, as j 
     m s^2 + k (1 + j eta):  s^2 = -omega_r^2 (1 + j eta_r),  omega_r = sqrt(k/m),  eta_r = eta
 
 A polynomial f = g + j h with real g and h has the roots of ``g^2 + h^2 = f(s) conj(f)(s)`` at which f
-vanishes; g and h being coprime, conj(f) does not. A function with kernels and complex coefficients is told
-from its image in the same way. One with loss factors is searched in the upper half-plane like any other, but
+vanishes; g and h being coprime, conj(f) does not. The same test tells a function with kernels and complex
+coefficients from its image. One with loss factors is searched in the upper half-plane like any other, but
 for its mirror images: with j among its coefficients it has none.
 """
 
@@ -19,10 +19,11 @@ from typing import Final
 
 from flint import acb, fmpz_mpoly
 
-from symflex.algebra import Factored, degree_in, summed, terms_of
+from symflex.algebra import Factored, degree_in, real_parts, summed, terms_of
 from symflex.balls import at_centre, precision
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.model.loss_factors import has_loss_factors
+from symflex.model.model import IMAGINARY
 from symflex.roots.engines import POLYNOMIAL
 from symflex.roots.pole_zero_map import Certificate, HiddenRoot, PoleZeroMap, StabilityVerdict, chosen, judge
 from symflex.roots.polynomial_roots import find_polynomial_roots
@@ -30,7 +31,7 @@ from symflex.roots.problem import cancelled, problem_of
 from symflex.roots.region import Everything, Region
 from symflex.roots.root import LossyRoot, Root
 from symflex.transfer import BoundTransferFunction
-from symflex.transfer.mirrored import mirrored, real_parts
+from symflex.transfer.mirrored import mirrored
 
 NO_STABILITY: Final = StabilityVerdict(
     "unknown",
@@ -135,7 +136,7 @@ def complex_roots(
     for factor, exponent in factors:
         if not degree_in(factor, 0):
             continue
-        g, h = real_parts(ring, factor)
+        g, h = real_parts(ring, factor, IMAGINARY)
         common = g.gcd(h)
         real = [(common, abs(exponent))] if degree_in(common, 0) else []
         roots += find_polynomial_roots(problem_of(bound, real), digits)

@@ -234,7 +234,7 @@ class _Sorted:
         def own(value: Factored) -> Factored:
             result = value.filter(lambda f: f != self.laplace and self._kind(f) == kind)
             power, where = value.exponent_of(self.laplace), self._kind(self.laplace)
-            # Of a root below waves in s whole powers are powers of s.
+            # Whole powers of a root below waves in s are powers of s.
             share = {"s": power - power % order, "root": power % order} if where == "s" else {where: power}
             result = result * Factored.polynomial(self.ring, self.laplace) ** share.get(kind, 0)
             return self._lowered(result) if is_lowered else result
@@ -331,7 +331,7 @@ def _verdict(
 ) -> tuple[StabilityVerdict, Sequence[Root], Sequence[Root]]:
     """Return whether a part is stable, with poles and hidden modes in the sector of all that may grow.
 
-    Those known on the sheet are told again where there may be others.
+    Poles known on the sheet are listed again where there may be others.
     """
     sides, reasons, is_singular = list[Sequence[Root]](), list[str](), False
     own, points = replace(part, variable="model"), DegeneratePoints(part, degenerate_points(part))

@@ -15,7 +15,7 @@ from typing import TypeVar
 
 from flint import fmpz_mpoly
 
-from symflex.algebra import Factored, Ring, by_powers, degree_in, irreducible_factors
+from symflex.algebra import Factored, Ring, degree_in, irreducible_factors, real_parts
 from symflex.model.model import IMAGINARY
 from symflex.transfer.bound import BoundTransferFunction
 from symflex.transfer.transfer_function import HiddenFactor, TransferFunction
@@ -30,13 +30,13 @@ def mirrored(function: Function) -> Function | None:
         return function
     if any(value.depends_on(IMAGINARY) for value in function.kernels.values):
         return None
-    parts = function.parts and (with_image(function.parts[0]), with_image(function.parts[1]))
+    parts = function.parts and (times_image(function.parts[0]), times_image(function.parts[1]))
     hidden = tuple(
         HiddenFactor(f, e * h.multiplicity)
         for h in function.hidden
-        for f, e in with_image(Factored.polynomial(ring, h.polynomial)).factors
+        for f, e in times_image(Factored.polynomial(ring, h.polynomial)).factors
     )
-    ratio = with_image(function.ratio)
+    ratio = times_image(function.ratio)
     if isinstance(function, BoundTransferFunction):
         return replace(function, ratio=ratio, hidden=hidden, parts=parts, is_of_model=False)
     waves = None if function.with_waves is None else mirrored(function.with_waves)
@@ -45,23 +45,15 @@ def mirrored(function: Function) -> Function | None:
     )
 
 
-def with_image(value: Factored) -> Factored:
+def times_image(value: Factored) -> Factored:
     """Return a product times its mirror image, over the same ring and without j."""
     if IMAGINARY not in value.ring.index:
         return value
     return value.map_factors(value.ring, lambda factor: _times_image(value.ring, factor))
 
 
-def real_parts(ring: Ring, factor: fmpz_mpoly) -> tuple[fmpz_mpoly, fmpz_mpoly]:
-    """Return g and h of ``g + j h``."""
-    parts = by_powers(ring, factor, ring.index[IMAGINARY]) if IMAGINARY in ring.index else {0: factor}
-    zero = ring.constant(0)
-    g, h = (sum((c * (-1) ** (n // 2) for n, c in parts.items() if n % 2 == odd), zero) for odd in (0, 1))
-    return g, h
-
-
 def _times_image(ring: Ring, factor: fmpz_mpoly) -> Factored:
-    g, h = real_parts(ring, factor)
+    g, h = real_parts(ring, factor, IMAGINARY)
     if not degree_in(factor, ring.index[IMAGINARY]):
         return Factored.polynomial(ring, factor) ** 2
     common = g.gcd(h)
