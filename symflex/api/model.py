@@ -134,7 +134,7 @@ class Model:
     def _resolve(
         self, source: Source, values: Mapping[str, Setting], allow_outside: Iterable[str | Path]
     ) -> None:
-        resolved = pipeline.loads(source.text, source.name, allow_outside, values)
+        resolved = pipeline.load_with(source, values, allow_outside=allow_outside)
         for name, value in (("resolved", resolved), ("_source", source), ("_values", dict(values))):
             object.__setattr__(self, name, value)
 

@@ -151,7 +151,7 @@ def diagnostic_json(diagnostic: Diagnostic) -> dict[str, object]:
     return {
         "code": diagnostic.code,
         "message": diagnostic.message,
-        "file": span.source.name if span else None,
+        "file": span.origin.source.name if span else None,
         "line": span.line if span else None,
         "column": span.column if span else None,
         "hint": diagnostic.hint,

@@ -13,6 +13,8 @@ class Source:
 
     name: str  # as shown in messages; a path, or ``<python>`` for a model built in Python
     text: str = field(repr=False)  # the whole text
+    # What each line of a text comes from that was made from another one, ``None`` where it was added.
+    origins: tuple[Span | None, ...] = field(default=(), repr=False, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,14 +31,22 @@ class Span:
     end: int
 
     @property
+    def origin(self) -> Span:
+        """Itself, or what its line comes from if the text was made from another one."""
+        number = self.source.text.count("\n", 0, self.start)
+        return next(filter(None, self.source.origins[number : number + 1]), self)
+
+    @property
     def line(self) -> int:
-        """Line number, counted from 1."""
-        return self.source.text.count("\n", 0, self.start) + 1
+        """Line number of its origin, counted from 1."""
+        origin = self.origin
+        return origin.source.text.count("\n", 0, origin.start) + 1
 
     @property
     def column(self) -> int:
-        """Column in characters, counted from 1."""
-        return self.start - self._line_start() + 1
+        """Column of its origin in characters, counted from 1."""
+        origin = self.origin
+        return origin.start - origin.source.text.rfind("\n", 0, origin.start)
 
     @property
     def text(self) -> str:
@@ -46,17 +56,14 @@ class Span:
     @property
     def line_text(self) -> str:
         """The whole line the span starts on, without its line end."""
-        begin = self._line_start()
+        begin = self.source.text.rfind("\n", 0, self.start) + 1
         end = self.source.text.find("\n", begin)
         line = self.source.text[begin:] if end < 0 else self.source.text[begin:end]
         return line.rstrip("\r")
 
-    def _line_start(self) -> int:
-        return self.source.text.rfind("\n", 0, self.start) + 1
-
     def __str__(self) -> str:
-        """Return ``file:line:col``."""
-        return f"{self.source.name}:{self.line}:{self.column}"
+        """Return ``file:line:col`` of its origin."""
+        return f"{self.origin.source.name}:{self.line}:{self.column}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +119,7 @@ class Diagnostic:
     def render(self) -> str:
         """Return the diagnostic as the lines a terminal shows."""
         said = f"{self.mark}: {self.message}"
-        lines = [said] if self.span is None else [f"{self.span}: {said}", *_excerpt(self.span)]
+        lines = [said] if self.span is None else [f"{self.span}: {said}", *_excerpt(self.span.origin)]
         if self.hint:
             lines.append(f"  hint: {self.hint}")
         return "\n".join(printable(line) for line in lines)

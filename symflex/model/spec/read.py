@@ -36,8 +36,7 @@ def read(path: str | Path) -> Source:
     if name.lower().endswith(NETLISTS):
         from symflex.model.spec.netlist import specification_of  # few specifications are netlists
 
-        text = specification_of(Source(name, _decoded(data)), lambda other: _beside(name, other))
-        return Source(f"{name}, as a specification", text)  # so that lines are not taken for the netlist's
+        return specification_of(Source(name, _decoded(data)), lambda other: _beside(name, other))
     try:
         return Source(name, data.decode("utf-8").removeprefix("\ufeff"))
     except UnicodeDecodeError as error:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any, Final
 
 from symflex.errors import Diagnostic, SpecError
+from symflex.model.spec.positions import Literal
 from symflex.model.spec.read import MAX_LITERAL, MAX_NESTING, number_problem
 
 INLINE_SECTIONS: Final = frozenset({"parameters", "elements", "inputs", "outputs", "blocks"})
@@ -27,29 +29,54 @@ def write(mapping: Mapping[str, object]) -> str:
     """Render nested values as the text that :func:`symflex.model.spec.parse` reads as the mapping."""
     # The two outer levels become ``[a]`` and ``[a.b]`` headers; what is deeper, and what stands in
     # `parameters`, `elements`, `inputs`, `outputs` and `blocks`, becomes inline tables. Values are str, int,
-    # Fraction, Decimal, float, bool, list, tuple, arrays of numpy, expressions of SymPy, and mappings of
-    # these; a fraction that is not a finite decimal becomes the string ``"p/q"``.
-    blocks = [_block("", [(key, v) for key, v in _items(mapping, ()) if not isinstance(v, Mapping)], ())]
+    # Fraction, Decimal, float, literals, bool, list, tuple, arrays of numpy, expressions of SymPy, and
+    # mappings of these; a fraction that is not a finite decimal becomes the string ``"p/q"``.
+    return "\n".join(
+        block.header + "".join(f"{entry.key} = {entry.value}\n" for entry in block.entries)
+        for block in blocks(mapping)
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class WrittenEntry:
+    """One line of a specification, with the keys that lead to it."""
+
+    path: tuple[str, ...]
+    key: str
+    value: str
+
+
+@dataclass(frozen=True, slots=True)
+class WrittenBlock:
+    """A header with its line end, empty for what stands before the first one, and the lines below it."""
+
+    header: str
+    entries: tuple[WrittenEntry, ...]
+
+
+def blocks(mapping: Mapping[str, object]) -> Iterator[WrittenBlock]:
+    """Yield what :func:`write` writes, for those who lay it out themselves."""
+    if scalars := [(key, value) for key, value in _items(mapping, ()) if not isinstance(value, Mapping)]:
+        yield _block("", scalars, ())
     for name, section in _items(mapping, ()):
         if isinstance(section, Mapping):
-            blocks += _section(name, section)
-    return "\n".join(block for block in blocks if block)
+            yield from _section(name, section)
 
 
-def _section(name: str, section: Mapping[Any, object]) -> list[str]:
+def _section(name: str, section: Mapping[Any, object]) -> Iterator[WrittenBlock]:
     items = _items(section, (name,))
     apart = [] if name in INLINE_SECTIONS else [key for key, value in items if isinstance(value, Mapping)]
-    own = [(key, value) for key, value in items if key not in apart]
-    blocks = [_block(f"[{_key(name)}]\n", own, (name,))] if own or not apart else []
+    direct = [(key, value) for key, value in items if key not in apart]
+    if direct or not apart:
+        yield _block(f"[{_key(name)}]\n", direct, (name,))
     for key, value in items:
         if key in apart and isinstance(value, Mapping):
-            header = f"[{_key(name)}.{_key(key)}]\n"
-            blocks.append(_block(header, _items(value, (name, key)), (name, key)))
-    return blocks
+            yield _block(f"[{_key(name)}.{_key(key)}]\n", _items(value, (name, key)), (name, key))
 
 
-def _block(header: str, items: list[tuple[str, object]], path: tuple[str, ...]) -> str:
-    return header + "".join(f"{_key(key)} = {_value(value, (*path, key))}\n" for key, value in items)
+def _block(header: str, items: list[tuple[str, object]], path: tuple[str, ...]) -> WrittenBlock:
+    entries = (WrittenEntry((*path, key), _key(key), _value(value, (*path, key))) for key, value in items)
+    return WrittenBlock(header, tuple(entries))
 
 
 def _items(mapping: Mapping[Any, object], path: tuple[str, ...]) -> list[tuple[str, object]]:
@@ -83,6 +110,8 @@ def _value(value: object, path: tuple[str, ...], depth: int = 0) -> str:
             if value.is_infinite():
                 return "-inf" if value < 0 else "inf"
             return _checked(str(value), path)
+        case Literal(text):
+            return _checked(text, path)
     if hasattr(value, "free_symbols") and not hasattr(value, "tolist"):
         return _string(str(value))  # SymPy prints what the grammar of expressions reads
     if hasattr(value, "tolist"):  # an array or number of numpy, a matrix of SymPy

@@ -1,8 +1,8 @@
 """SPICE netlists as specifications, as a person would have written them.
 
 Input: the text of a netlist (.cir, .net, .sp), and how files beside it are read. Output: the text of a
-specification: component values with units, nodes by name, sources of small signals as inputs, what is printed
-or probed as outputs.
+specification, each line with the statement it comes from: component values with units, nodes by name, sources
+of small signals as inputs, what is printed or probed as outputs.
 
     RC low-pass                         title      = "RC low-pass"
     V1 in 0 AC 1                        parameters = { R1 = "10 kOhm", C1 = "4.7 nF" }

@@ -1,4 +1,4 @@
-"""What has been read of a netlist, and the text of the specification that it makes.
+"""What has been read of a netlist, as the tables of a specification, and their text.
 
 Names are those of the netlist as far as a specification can have them: letters, digits and underscores, at
 most 64, every one once. A parameter, a definition and a node never share a name.
@@ -7,14 +7,20 @@ most 64, every one once. A parameter, a definition and a node never share a name
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Final
 
+from symflex.errors import Source, Span
 from symflex.expressions import Expression, Name, format_expression
 from symflex.expressions.format import number_text
+from symflex.model.spec.netlist.cards import Card
 from symflex.model.spec.netlist.expressions import exact
+from symflex.model.spec.positions import Literal
+from symflex.model.spec.write import blocks
+
+SECTIONS: Final = ("parameters", "definitions", "elements", "fields", "inputs", "outputs", "analysis")
 
 PREFIXES: Final = {"e9": "G", "e6": "M", "e3": "k", "e-3": "m", "e-6": "u", "e-9": "n", "e-12": "p"}
 TAKEN: Final = frozenset(("s", "pi", "j", "ground"))
@@ -26,18 +32,19 @@ SHORT: Final = 12  # digits up to which a computed value is written with a prefi
 class Circuit:
     """What has been read."""
 
-    parameters: dict[str, str] = field(default_factory=dict)
-    definitions: dict[str, str] = field(default_factory=dict)
-    elements: list[tuple[str, str, str]] = field(default_factory=list)  # name, table, comment
-    fields: dict[str, list[str]] = field(default_factory=dict)
-    inputs: dict[str, str] = field(default_factory=dict)
-    outputs: dict[str, str] = field(default_factory=dict)
+    sections: dict[str, dict[str, object]] = field(default_factory=lambda: {name: {} for name in SECTIONS})
+    cards: dict[tuple[str, ...], Card] = field(default_factory=dict)  # by section and key
     nodes: dict[str, str] = field(default_factory=dict)  # by path
     reserved: set[str] = field(default_factory=set)  # names that nodes do not take: those of values to come
     named: set[str] = field(default_factory=lambda: set(TAKEN))  # of values and nodes
     lowered: set[str] = field(default_factory=lambda: set(TAKEN))  # the same in small letters
     placed: set[str] = field(default_factory=set)  # of elements
-    band: str = ""
+
+    def add(self, section: str, name: str, value: object, card: Card | None) -> None:
+        """Add an entry, with the statement that it comes from; one of the same name keeps its place."""
+        self.sections[section][name] = value
+        if card is not None:
+            self.cards[section, name] = card
 
     def value_name(self, name: str) -> str:
         """Return a name for a parameter or a definition that nothing else has."""
@@ -46,25 +53,33 @@ class Circuit:
         return own
 
     def assign(
-        self, own: str, value: Expression, written: tuple[str, str] | None = None, unit: str = ""
+        self,
+        name: str,
+        value: Expression,
+        card: Card,
+        written: tuple[str, str] | None = None,
+        unit: str = "",
     ) -> Name:
         """Give a name its value: a parameter for a number, a definition for an expression.
 
         ``written`` are the digits and the power of ten of a number as it was written.
         """
         known = exact(value)
-        if written is not None:
-            self.parameters[own] = quantity(*written, unit)
-        elif known is not None:
-            self.parameters[own] = computed_quantity(known, unit)
-        else:
-            self.definitions[own] = format_expression(value)
-        return Name(own)
+        if written is None and known is None:
+            self.add("definitions", name, format_expression(value), card)
+            return Name(name)
+        text = (
+            quantity(*written, unit) if written is not None else computed_quantity(known or Fraction(), unit)
+        )
+        entry = text if re.search(r"[ /]", text) else Literal(text)
+        is_positive = re.match("-|[^1-9]*$", text) is None
+        self.add("parameters", name, entry if is_positive else {"value": entry, "assume": "real"}, card)
+        return Name(name)
 
-    def symbol(self, own: str, unit: str) -> Name:
+    def symbol(self, name: str, unit: str, card: Card) -> Name:
         """Declare a parameter without a value."""
-        self.parameters[own] = f'{{ unit = "{unit or 1}" }}'
-        return Name(own)
+        self.add("parameters", name, {"unit": unit or "1"}, card)
+        return Name(name)
 
     def node(self, path: str, name: str) -> str:
         """Return the name of a node by its path, a new one where it is first met."""
@@ -75,10 +90,12 @@ class Circuit:
             self.nodes[path] = own
         return self.nodes[path]
 
-    def output(self, name: str, expression: str) -> None:
+    def output(self, name: str, expression: str, card: Card) -> None:
         """Add an output, under a name that no other one has."""
-        own = _free(name, lambda free: self.outputs.get(free, expression) != expression)
-        self.outputs[own] = expression
+        outputs = self.sections["outputs"]
+        self.add(
+            "outputs", _free(name, lambda free: outputs.get(free, expression) != expression), expression, card
+        )
 
     def _take(self, name: str) -> None:
         self.named.add(name)
@@ -128,45 +145,22 @@ def computed_quantity(value: Fraction, unit: str = "") -> str:
     return f"{sign}{plain} {unit}"
 
 
-def texts(words: Sequence[str]) -> str:
-    """Return an array of strings in TOML."""
-    return "[" + ", ".join(f'"{w}"' for w in words) + "]"
-
-
-def written(title: str, comments: Sequence[str], circuit: Circuit) -> str:
-    """Return the specification."""
-    lines = [f"# {_plain(c)}" for c in comments]
-    lines += ["symflex = 1", f"title   = {_quoted(title or 'circuit')}"]
-
-    def section(name: str, entries: Iterator[tuple[str, str]]) -> None:
-        rows = list(entries)
-        if rows:
-            width = max(len(key) for key, _ in rows)
-            lines.extend(["", f"[{name}]", *(f"{key.ljust(width)} = {text}" for key, text in rows)])
-
-    quoted = (
-        (n, f'"{v}"' if re.search(r"[ /]", v) and v[0] != "{" else v) for n, v in circuit.parameters.items()
-    )
-    real = ', assume = "real" }'  # what is negative, or zero
-    section(
-        "parameters", ((n, f"{{ value = {v}{real}" if re.match('"?-|[^1-9{]*$', v) else v) for n, v in quoted)
-    )
-    section("definitions", ((n, f'"{v}"') for n, v in circuit.definitions.items()))
-    section(
-        "elements", ((n, f"{{ {t} }}" + (f"  # {_plain(c)}" if c else "")) for n, t, c in circuit.elements)
-    )
-    for name, entries in circuit.fields.items():
-        lines += ["", f"[fields.{name}]", *entries]
-    section("inputs", iter(circuit.inputs.items()))
-    section("outputs", ((n, f'"{e}"') for n, e in circuit.outputs.items()))
-    if circuit.band:
-        lines += ["", "[analysis]", circuit.band]
-    return "\n".join(lines) + "\n"
+def written(source: Source, title: str, comments: Sequence[str], circuit: Circuit) -> Source:
+    """Return the specification that a netlist stands for: each line knows the statement it comes from."""
+    lines: list[tuple[str, Span | None]] = [(f"# {_plain(comment)}", None) for comment in comments]
+    heading = {"symflex": 1, "title": _plain(title or "circuit")}
+    for block in blocks(heading | {name: table for name, table in circuit.sections.items() if table}):
+        if block.header:
+            lines += [("", None), (block.header.rstrip(), None)]
+        width = max(len(entry.key) for entry in block.entries)
+        for entry in block.entries:
+            card = circuit.cards.get(entry.path[:2])
+            comment = _plain(card.comment) if card and entry.path[0] == "elements" else ""
+            text = f"{entry.key.ljust(width)} = {entry.value}" + (f"  # {comment}" if comment else "")
+            lines.append((text, card.span if card else None))
+    texts, origins = zip(*lines, strict=True)
+    return Source(f"{source.name}, as a specification", "\n".join(texts) + "\n", origins)
 
 
 def _plain(text: str) -> str:
     return "".join(c for c in text if c.isprintable())
-
-
-def _quoted(text: str) -> str:
-    return '"' + _plain(text).replace("\\", "\\\\").replace('"', '\\"') + '"'

@@ -23,7 +23,6 @@ from symflex.expressions import (
 )
 from symflex.expressions.nodes import negative
 from symflex.model.spec.netlist.cards import Card
-from symflex.model.spec.netlist.circuit import texts
 from symflex.model.spec.netlist.expressions import added, divided
 from symflex.model.spec.netlist.statement import APART, Build, Coil, CoupledPair, PlacedCard, difference
 
@@ -66,7 +65,7 @@ def component(line: PlacedCard) -> None:
     line.carries(Attribute(name, "i"))
     if letter != "L" and ends[0] == ends[1]:
         return  # it is shorted
-    line.add(name, f'type = "{kind}", between = {texts(ends)}, {key} = "{format_expression(value)}"')
+    line.add(name, {"type": kind, "between": ends, key: format_expression(value)})
 
 
 def _model(line: PlacedCard, model: Card, *, has_value: bool) -> dict[str, str]:
@@ -125,7 +124,7 @@ def coupling(line: PlacedCard) -> None:
 
 def couple(build: Build) -> None:
     """Replace coupled inductors: by a pair of windings, or by sources where more of them share a core."""
-    windings, elements = build.windings, build.circuit.elements
+    windings, circuit = build.windings, build.circuit
     cores: dict[str, set[str]] = {}  # by path, every inductor that is coupled to this one
     mutual: dict[frozenset[str], Expression] = {}
     for each in build.couplings:
@@ -139,27 +138,29 @@ def couple(build: Build) -> None:
         core = cores.get(each.pair[0], {each.pair[0]}) | cores.get(each.pair[1], {each.pair[1]})
         cores.update(dict.fromkeys(core, core))
     coupled = {windings[p].name: p for p in cores}
-    build.circuit.elements = [e for e in elements if e[0] not in coupled]
+    replaced = [name for name in circuit.sections["elements"] if name in coupled]
+    for name in replaced:
+        del circuit.sections["elements"][name]
     for each in build.couplings:
         if len(cores[each.pair[0]]) == 2:  # noqa: PLR2004
             one, two = (windings[p] for p in each.pair)
             l_1, l_2, m = map(format_expression, (one.value, two.value, mutual[frozenset(each.pair)]))
-            table = f'type = "coupled_inductors", terminals = {texts((*one.ends, *two.ends))}, '
-            table += f'L_1 = "{l_1}", L_2 = "{l_2}", M = "{m}"'
-            build.circuit.elements.append((each.name, table, each.card.comment))
+            terminals = [*one.ends, *two.ends]
+            table = {"type": "coupled_inductors", "terminals": terminals, "L_1": l_1, "L_2": l_2, "M": m}
+            circuit.add("elements", each.name, table, each.card)
             for n, path in enumerate(each.pair, 1):
                 build.currents[path] = Attribute(each.name, f"i_{n}")
-    for name, _, comment in elements:
-        path = coupled.get(name, "")
-        if path and len(cores[path]) > 2:  # noqa: PLR2004
+    for name in replaced:
+        path = coupled[name]
+        if len(cores[path]) > 2:  # noqa: PLR2004
             # v = s*(L*i + M*j + ...) of the currents that flow in, and the .i of a source flows out.
             terms = [product_of([windings[path].value, Attribute(name, "i")])]
             for other in sorted(cores[path] - {path}):
                 if (m_12 := mutual.get(frozenset((path, other)))) is not None:
                     terms.append(product_of([m_12, Attribute(windings[other].name, "i")]))
             text = format_expression(negative(product_of([Name("s"), sum_of(terms)])))
-            table = f'type = "voltage_source", between = {texts(windings[path].ends)}, v = "{text}"'
-            build.circuit.elements.append((name, table, comment))
+            source = {"type": "voltage_source", "between": windings[path].ends, "v": text}
+            circuit.add("elements", name, source, circuit.cards["elements", name])
             build.currents[path] = negative(Attribute(name, "i"))
 
 
@@ -184,12 +185,13 @@ def lossless_line(line: PlacedCard) -> None:
     times = format_expression(negative(product_of([Name("s"), time, z])))
     over = format_expression(negative(divided(product_of([Name("s"), time]), z)))
     one, two = (format_expression(difference(pair)) for pair in ((a, b), (c, d)))
-    circuit.fields[name] = [
-        f"unknowns   = {texts((v, i))}",
-        'domain     = ["0", "1"]',
-        "equations  = " + texts((f"{v}' = {times}*{i}", f"{i}' = {over}*{v}")),
-        "conditions = " + texts((f"{v}(0) = {one}", f"{v}(1) = {two}")),
-    ]
+    table = {
+        "unknowns": [v, i],
+        "domain": ["0", "1"],
+        "equations": [f"{v}' = {times}*{i}", f"{i}' = {over}*{v}"],
+        "conditions": [f"{v}(0) = {one}", f"{v}(1) = {two}"],
+    }
+    circuit.add("fields", name, table, card)
     for suffix, ends, current in (("_1", (a, b), f"{i}(0)"), ("_2", (d, c), f"{i}(1)")):
         if ends[0] != ends[1]:  # not a short circuit, as at the end of a stub
             line.source(line.element(suffix), ends, current, is_voltage=False)

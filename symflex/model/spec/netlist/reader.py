@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Final
 
 from symflex.errors import Diagnostic, Source, SpecError, nearest
 from symflex.expressions import Attribute, Expression, format_expression, names
 from symflex.model.spec.netlist.cards import MOST_DEPTH, Card, Deck
-from symflex.model.spec.netlist.circuit import Circuit, quantity, texts, written
+from symflex.model.spec.netlist.circuit import Circuit, quantity, written
 from symflex.model.spec.netlist.expressions import number_of
 from symflex.model.spec.netlist.passive import component, couple, coupling, lossless_line
 from symflex.model.spec.netlist.scopes import Parameter, Scope
@@ -54,14 +55,14 @@ TAKEN_BY: Final[dict[str, Callable[[PlacedCard], None]]] = {
 }
 
 
-def specification_of(source: Source, read: Callable[[str], Source]) -> str:
-    """Return the text of a specification; SF105 for a line that cannot be read. ``read`` reads others."""
+def specification_of(source: Source, read: Callable[[str], Source]) -> Source:
+    """Return the specification of a netlist; SF105 for a line that cannot be read. ``read`` reads others."""
     deck = Deck(source, read)
     title, cards = deck.title_and_cards()
     body, subcircuits = deck.split(cards, {})
     reader = _Netlist(deck, Scope(subcircuits=subcircuits))
     reader.take(body)
-    return written(title, deck.comments, reader.finished(body))
+    return written(source, title, deck.comments, reader.finished(body))
 
 
 class _Netlist:
@@ -214,7 +215,7 @@ class _Netlist:
             found = [number_of(card, w) for w in card.words[3:5]]
             ends = [quantity(*x, "Hz") for x in found if x is not None]
             if len(set(ends)) == 2:  # noqa: PLR2004
-                self.build.circuit.band = f"band = {texts(ends)}"
+                self.build.circuit.add("analysis", "band", ends, card)
         else:
             hint = nearest(word, [*IGNORED, "param", "ac", "print", "tf", "include", "subckt"])
             hint = "write the lines that hold" if word in ("if", "else", "elseif", "endif") else hint
@@ -240,13 +241,13 @@ class _Netlist:
             nodes = [line.touched(w) for w in asked]
             shown = [n for n in nodes if n != "ground"]
             if shown:
-                circuit.output("V_" + "_".join(shown), format_expression(difference(nodes)))
+                circuit.output("V_" + "_".join(shown), format_expression(difference(nodes)), line.card)
         elif len(asked) == 1:
             read = line.current(asked[0])
             (own,) = names(read)
             is_winding = isinstance(own, Attribute) and own.name != "i"
             label = asked[0] if is_winding or not isinstance(own, Attribute) else own.owner
-            circuit.output(f"I_{label}", format_expression(read))
+            circuit.output(f"I_{label}", format_expression(read), line.card)
 
     def finished(self, body: Sequence[Card]) -> Circuit:
         """Return the circuit with its sources as inputs, or at rest, and with outputs."""
@@ -259,15 +260,19 @@ class _Netlist:
             message = "a netlist needs a source, V or I, for its input, such as V1 in 0 AC 1"
             raise SpecError(Diagnostic("SF105", message, body[0].span if body else None))
         for source in sources:
-            name, (a, b) = source.name, source.ends
-            ends = f'"{a}"' if b == "ground" else texts((a, b))
+            a, b = source.ends
+            ends = a if b == "ground" else [a, b]
             if source in acting:
-                back = f'{{ current = "{b}" }}' if a == "ground" else f"{{ current = {texts((b, a))} }}"
-                circuit.inputs[name] = f"{{ voltage = {ends} }}" if source.letter == "V" else back
+                kind, port = (
+                    ("voltage", ends) if source.letter == "V" else ("current", b if a == "ground" else [b, a])
+                )
+                circuit.add("inputs", source.name, {kind: port}, source.card)
             elif source.letter == "V":
-                key = "at" if b == "ground" else "between"
-                circuit.elements.append((name, f'type = "voltage_source", {key} = {ends}, v = 0', "at rest"))
-        if not circuit.outputs:
+                table = {"type": "voltage_source", "at" if b == "ground" else "between": ends, "v": 0}
+                circuit.add("elements", source.name, table, replace(source.card, comment="at rest"))
+        if not circuit.sections["outputs"]:
             driven = {x.ends[0] for x in sources if x.letter == "V"}
-            circuit.outputs = {f"V_{n}": n for n in circuit.nodes.values() if n not in driven}
+            for node in circuit.nodes.values():
+                if node not in driven:
+                    circuit.add("outputs", f"V_{node}", node, None)
         return circuit

@@ -156,7 +156,7 @@ class Values:
             return value
         written = number_of(parameter.card, parameter.text)
         label = parameter.label or self.circuit.value_name(parameter.scope.prefix + parameter.name)
-        return self.circuit.assign(label, value, written)
+        return self.circuit.assign(label, value, parameter.card, written)
 
 
 @dataclass(frozen=True)

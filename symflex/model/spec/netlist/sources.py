@@ -9,7 +9,6 @@ from itertools import pairwise
 from typing import Final
 
 from symflex.expressions import Expression, Name, format_expression, product_of, sum_of
-from symflex.model.spec.netlist.circuit import texts
 from symflex.model.spec.netlist.expressions import expression_of, slopes
 from symflex.model.spec.netlist.scopes import Lookup
 from symflex.model.spec.netlist.statement import APART, IndependentSource, PlacedCard, difference
@@ -37,7 +36,9 @@ def independent(line: PlacedCard) -> None:
     moves = any(re.match(r"(sin|sine|pulse|pwl|exp|sffm|wave\w*)\b", w) for w in plain)
     kind = "ac" if is_ac else "moves" if moves else "rests"
     name = line.element()
-    line.build.sources.append(IndependentSource(name, line.path, line.letter, (ends[0], ends[1]), kind))
+    line.build.sources.append(
+        IndependentSource(name, line.path, line.letter, (ends[0], ends[1]), line.card, kind)
+    )
     if line.letter == "V":
         line.carries_own(name, is_voltage=True)
 
@@ -53,7 +54,7 @@ def controlled(line: PlacedCard) -> None:
         inputs = line.nodes(at, 2)
         rest = [w for w in card.words[at + 2 :] if w != "N"]
         line.check(rest[1:], given)
-        _op_amp(line, name, inputs, ends, format_expression(line.number(rest[0])) if rest else "")
+        _op_amp(line, name, inputs, ends, A=format_expression(line.number(rest[0])) if rest else "")
         return
     is_voltage = letter in "EH"
     line.carries_own(name, is_voltage=is_voltage)
@@ -83,9 +84,8 @@ def controlled(line: PlacedCard) -> None:
     gains = [line.valued(n, w, GAIN_UNITS[letter]) for n, w in zip(labels, rest, strict=False)]
     if width == 2 and count == 1:  # noqa: PLR2004
         kind, key = ("vcvs", "mu") if is_voltage else ("vccs", "g")
-        terminals = texts(ends if is_voltage else ends[::-1])
-        table = f'type = "{kind}", inputs = {texts([line.node(w) for w in control])}, terminals = {terminals}'
-        line.add(name, f'{table}, {key} = "{format_expression(gains[0])}"')
+        ports = {"inputs": [line.node(w) for w in control], "terminals": ends if is_voltage else ends[::-1]}
+        line.add(name, {"type": kind, **ports, key: format_expression(gains[0])})
         return
     nodes = [line.node(w) for w in control] if width == 2 else []  # noqa: PLR2004
 
@@ -161,15 +161,13 @@ def arbitrary(line: PlacedCard) -> None:
     _linear(line, name, ends, text, is_voltage=is_voltage)
 
 
-def _op_amp(
-    line: PlacedCard, name: str, inputs: Sequence[str], ends: Sequence[str], gain: str, more: str = ""
-) -> None:
+def _op_amp(line: PlacedCard, name: str, inputs: Sequence[str], ends: Sequence[str], **values: str) -> None:
     if ends[1] != "ground":
         raise line.card.refuse(
             f"the output of '{line.word}' is not against ground", "write its second node as 0"
         )
-    a = f', A = "{gain}"' if gain else ""
-    line.add(name, f'type = "op_amp", inputs = {texts(inputs)}, out = "{ends[0]}"{a}{more}')
+    given = {key: value for key, value in values.items() if value}
+    line.add(name, {"type": "op_amp", "inputs": [*inputs], "out": ends[0], **given})
     line.carries_own(name, is_voltage=True)
 
 
@@ -192,8 +190,8 @@ def library_op_amp(line: PlacedCard, words: Sequence[str], given: Mapping[str, s
         if key in given:
             part = line.element(label)
             value = format_expression(line.valued(part, given[key], "Ohm"))
-            line.add(part, f'type = "resistor", between = {texts(ends)}, R = "{value}"')
+            line.add(part, {"type": "resistor", "between": [*ends], "R": value})
     text, band = given.get("avol", given.get("aol", "")), given.get("gbw", "")
     gain = format_expression(line.valued(f"{name}_Avol", text, "")) if text else ""
     f_u = format_expression(line.valued(f"{name}_GBW", band, "Hz")) if band else ""
-    _op_amp(line, name, inputs, (inner, "ground"), gain, f', f_u = "{f_u}"' if band else "")
+    _op_amp(line, name, inputs, (inner, "ground"), A=gain, f_u=f_u)

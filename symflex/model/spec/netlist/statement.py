@@ -16,7 +16,7 @@ from symflex.errors import nearest
 from symflex.expressions import Attribute, Expression, Name, names, number, product_of, sum_of
 from symflex.expressions.nodes import negative
 from symflex.model.spec.netlist.cards import Card, Deck
-from symflex.model.spec.netlist.circuit import Circuit, texts
+from symflex.model.spec.netlist.circuit import Circuit
 from symflex.model.spec.netlist.expressions import exactly, number_of
 from symflex.model.spec.netlist.scopes import NOMINAL, Lookup, Scope, Values
 
@@ -55,6 +55,7 @@ class IndependentSource:
     path: str
     letter: str
     ends: tuple[str, str]
+    card: Card
     kind: str  # "ac", "moves" or "rests"
 
 
@@ -104,9 +105,9 @@ class PlacedCard:
         """Return a new name for an element that comes from it."""
         return self.build.circuit.element(f"{self.scope.prefix}{self.card.words[0]}{suffix}")
 
-    def add(self, name: str, table: str) -> None:
+    def add(self, name: str, table: Mapping[str, object]) -> None:
         """Add an element to the circuit."""
-        self.build.circuit.elements.append((name, table, self.card.comment))
+        self.build.circuit.add("elements", name, table, self.card)
 
     def carries(self, current: Expression, path: str = "") -> None:
         """Tell the current into its first node, as SPICE counts it."""
@@ -164,7 +165,7 @@ class PlacedCard:
         circuit = self.build.circuit
         found = Lookup(self.build.values, self.card, self.scope).found(text.lower())
         if text.lower() == self.card.keyword and found is None:  # R1 a b R1: a value without a number
-            value: Expression = circuit.symbol(circuit.value_name(name), unit)
+            value: Expression = circuit.symbol(circuit.value_name(name), unit, self.card)
             return value if factor is None else product_of([value, factor])
         value = self.number(text)
         written = number_of(self.card, text)
@@ -175,7 +176,11 @@ class PlacedCard:
     def named(self, name: str, value: Expression, written: tuple[str, str] | None, unit: str) -> Expression:
         """Return a parameter for a constant, with its digits as they were written, or else the expression."""
         circuit = self.build.circuit
-        return value if names(value) else circuit.assign(circuit.value_name(name), value, written, unit)
+        return (
+            value
+            if names(value)
+            else circuit.assign(circuit.value_name(name), value, self.card, written, unit)
+        )
 
     def size(self, text: str) -> Fraction | None:
         """Return the number that a word is."""
@@ -201,9 +206,9 @@ class PlacedCard:
     def source(self, name: str, ends: Sequence[str], text: str, *, is_voltage: bool) -> None:
         """Add a source of a value; SPICE counts its current from its first node through it."""
         if is_voltage:
-            self.add(name, f'type = "voltage_source", between = {texts(ends)}, v = "{text}"')
+            self.add(name, {"type": "voltage_source", "between": [*ends], "v": text})
         else:
-            self.add(name, f'type = "current_source", between = {texts(ends[::-1])}, i = "{text}"')
+            self.add(name, {"type": "current_source", "between": [*ends[::-1]], "i": text})
 
     def carries_own(self, name: str, *, is_voltage: bool) -> None:
         """Tell the current of a source, whose .i is delivered: a voltage delivers it at its first node."""

@@ -245,7 +245,7 @@ def test_a_long_chain_of_parameters_is_read(tmp_path):
     chain = "\n".join(f".param p{n}={{p{n + 1}+1}}" for n in range(300))
     text = specification_of(
         Source("a.cir", f"title\nV1 in 0 AC 1\n{chain}\n.param p300=1\nR1 in 0 {{p0}}\n"), None
-    )
+    ).text
     assert 'p299 = "p300 + 1"' in text
 
 
@@ -260,3 +260,10 @@ def test_a_place_in_an_included_file_is_told_with_its_line(tmp_path):
     with pytest.raises(SymflexError) as raised:
         loaded(tmp_path, "R1 in out 1k\n.include b.inc")
     assert str(raised.value.diagnostics[0].span) == "b.inc:2:1"
+
+
+def test_a_problem_of_the_circuit_is_told_at_its_statement(tmp_path):
+    (tmp_path / "b.inc").write_text("* nothing\nR3 out loose 1k\n")
+    model = loaded(tmp_path, "R1 in out 1k\n.include b.inc\nR2 x y\n+ 1k\n.print ac v(out)")
+    places = {w.message.split("'")[1]: str(w.span).rpartition("/")[2] for w in model.warnings}
+    assert places == {"R3": "b.inc:2:1", "R2": "circuit.cir:5:1"}
