@@ -38,7 +38,8 @@ from symflex.print.forms import print_form, with_hidden
 from symflex.print.html import escape_html
 from symflex.print.latex import model_labels
 from symflex.print.mathml import label_mathml, math_element, transfer_function_mathml
-from symflex.roots import Modes, PoleZeroMap, Progress, Root
+from symflex.roots import Everything, Modes, PoleZeroMap, Progress, Root
+from symflex.roots.pole_zero_map import chosen, right_beyond
 
 SCRIPTS: Final = ("discs.js", "roots.js", "page.js")  # files of the script, in their order
 FACTOR: Final = 10
@@ -95,7 +96,7 @@ def _part(number: int, model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[
     every = JAVASCRIPT.contents(model, derived)
     contents = replace(every, members=tuple(m for m in every.members if not m.is_response))
     module = "\n".join(map(_packed, javascript_module(contents).text.splitlines()))
-    data = _data(contents, contents.names(RESERVED)[1], _located(model, pairs))
+    data = _data(contents, contents.names(RESERVED)[1], pairs)
     script = json.dumps(data, allow_nan=False).replace("<", "\\u003c")
     returned = f"return {{ PARAMETERS, TRANSFER_FUNCTIONS, data: {script} }};"
     return _markup(number, contents, data), f"(() => {{\n{module}\n{returned}\n}})()"
@@ -110,29 +111,24 @@ def _packed(line: str) -> str:
 # ---------------------------------------------------------------------------------------------------- data
 
 
-def _located(model: Model, pairs: Sequence[tuple[str, str]]) -> list[PoleZeroMap | str]:
-    """Return the roots of every function at the declared values, or why there are none."""
-    found: list[PoleZeroMap | str] = []
+def _located(model: Model, pair: tuple[str, str]) -> PoleZeroMap | str:
+    """Return the roots of a function without tapes at the declared values, or why there are none."""
     region = None if model.analysis.modes or not model.is_distributed else Modes(MODES)
-    for pair in pairs:
-        try:
-            (bound,) = pipeline.derive_for_roots(model, [pair])
-            found.append(pipeline.roots(bound, region))
-        except SymflexError as error:
-            found.append(error.diagnostics[0].message)
-    return found
+    try:
+        (bound,) = pipeline.derive_for_roots(model, [pair])
+        return pipeline.roots(bound, region)
+    except SymflexError as error:
+        return error.diagnostics[0].message
 
 
-def _data(
-    contents: Contents, names: Mapping[str, str], located: Sequence[PoleZeroMap | str]
-) -> dict[str, Any]:
+def _data(contents: Contents, names: Mapping[str, str], pairs: Sequence[tuple[str, str]]) -> dict[str, Any]:
     model = contents.model
     moving = {p.name for m in contents.members for p in m.parameters}
     used = [p for p in model.settable if p.value is not None or p.name in moving]
-    functions = [
-        {**_function(m, at), "tape": {"refused": FIXED} if m.is_fixed else tape_of(m.tf, names)}
-        for m, at in zip(contents.members, located, strict=True)
-    ]
+    functions = []
+    for member, pair in zip(contents.members, pairs, strict=True):
+        tape, located = ({"refused": FIXED}, None) if member.is_fixed else tape_of(member.tf, names)
+        functions.append({**_function(member, located or _located(model, pair)), "tape": tape})
     # frequencies [Hz] around the roots, or the default of a frequency response
     sizes = [abs(complex(x, y)) / tau for f in functions for x, y, _ in f["poles"] + f["zeros"] if x or y]
     around = [min(sizes) / 30, max(sizes) * 3] if sizes else [0.1, 100.0]
@@ -178,7 +174,10 @@ def _function(member: Member, located: PoleZeroMap | str) -> dict[str, Any]:
         return {**data, "why": located, "poles": [], "zeros": [], "infinite": not tf.is_rational}
     data |= {"why": "", "infinite": located.is_infinite, "certified": located.certificate.certified}
     verdict = {"sentence": located.verdict.sentence, "word": located.verdict.word}
-    roots = {"poles": _upper(located.all_poles), "zeros": _upper(located.zeros)}
+    shown = Modes(tf.model.analysis.modes or MODES) if tf.model.is_distributed else Everything()
+    lowest = chosen(located.poles, shown)
+    poles = (*lowest, *right_beyond(located.all_poles, lowest))
+    roots = {"poles": _upper(poles), "zeros": _upper(chosen(located.zeros, shown))}
     return {**data, **roots, "verdict": verdict if located.verdict.certified else None}
 
 

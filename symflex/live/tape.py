@@ -43,7 +43,7 @@ from symflex.codegen.program.distributed import Pieces
 from symflex.codegen.program.evaluate import nearest_double
 from symflex.codegen.program.forge import straight
 from symflex.errors import Diagnostic, SymflexError, UncertifiedError
-from symflex.roots import Everything, Modes
+from symflex.roots import Everything, Modes, PoleZeroMap
 from symflex.roots.functions.kernel_function import SERIES_TERMS, KernelFunction
 from symflex.roots.locate import locate
 from symflex.roots.passivity import energy_proof
@@ -54,16 +54,21 @@ FIXED = "it is evaluated by a product over its roots, whose parameters are fixed
 ULP = 2.0**-52  # bound of the relative error of a number that is rounded to a double
 
 
-def tape_of(tf: AnyTransferFunction, names: Mapping[str, str], modes: int = MODES) -> dict[str, object]:
-    """Return the tapes of numerator and denominator, or why there are none; ``names`` are identifiers."""
+def tape_of(
+    tf: AnyTransferFunction, names: Mapping[str, str], modes: int = MODES
+) -> tuple[dict[str, object], PoleZeroMap | None]:
+    """Return the tapes of numerator and denominator, and the roots from which they are followed.
+
+    Without tapes it is said why there are none; ``names`` are identifiers.
+    """
     if (reason := _refusal(tf)) or not tf.is_reduced:
-        return {"refused": reason}
+        return {"refused": reason}, None
     try:
         bound = bind(tf)
         located = locate(bound, Everything() if tf.is_rational else Modes(modes + 2), digits=17)
         sides = {"poles": list(_parts(tf, bound, 1)), "zeros": list(_parts(tf, bound, 0))}
     except SymflexError as error:
-        return {"refused": error.diagnostics[0].message}
+        return {"refused": error.diagnostics[0].message}, None
     # One of each conjugate pair, and those at 0 left out.
     start = {
         kind: [[z.real, z.imag] for z in map(complex, getattr(located, kind)) if z and z.imag >= 0]
@@ -73,7 +78,7 @@ def tape_of(tf: AnyTransferFunction, names: Mapping[str, str], modes: int = MODE
     every = tuple(p.name for p in tf.model.parameters)
     passive = energy_proof(tf.model, output=tf.output, free=every).is_passive
     named = {"parameters": [names[p.name] for p in tf.parameters], "modes": modes, "passive": passive}
-    return named | {"start": start, **sides}
+    return named | {"start": start, **sides}, located
 
 
 def _refusal(tf: AnyTransferFunction) -> str:

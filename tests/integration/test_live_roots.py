@@ -15,11 +15,14 @@ import pytest
 from flint import acb, ctx
 
 from symflex import pipeline
+from symflex.budget import Silent
+from symflex.live.page import live_page
 from symflex.live.tape import tape_of
 from symflex.roots import Band, Everything
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.locate import locate
 from symflex.transfer import bind
+from tests.house.repository import ROOT
 from tests.integration.node import Node
 from tests.unit.codegen.exportable import derived
 
@@ -111,7 +114,7 @@ def walks(node, name, count, decades):
         positions = [
             {k: v * 10 ** draw.uniform(-decades, decades) for k, v in start.items()} for _ in range(count)
         ]
-        given = map(json.dumps, (tape_of(tf, {name: name for name in start}), start, positions))
+        given = map(json.dumps, (tape_of(tf, {name: name for name in start})[0], start, positions))
         rows.append((tf, positions, node.keep(f"walked({', '.join(given)})")))
     return rows
 
@@ -169,7 +172,7 @@ def test_roots_of_a_lumped_and_of_a_distributed_model_are_proved_and_right_where
 def test_only_positive_values_are_passive(node):
     ((tf, _, key), *_) = walks(node, "two_mass", 1, 0.0)
     at = {p.name: -float(p.value.nearly) for p in tf.parameters}
-    tape = json.dumps(tape_of(tf, {name: name for name in at}))
+    tape = json.dumps(tape_of(tf, {name: name for name in at})[0])
     key = node.keep(f"walked({tape}, {json.dumps(at)}, [{json.dumps(at)}])[0].isPassive")
     node.run()
     assert node.values[key] is False
@@ -192,7 +195,7 @@ def test_a_pole_that_crosses_the_axis_turns_the_verdict(node):
     at = [
         {"m": 1.0, "k": 100.0, "b": b, "a": 0.3, "h": 2.0} for b in (0.3, -0.3, 30.0, 20.0)
     ]  # sin^2 + cos^2 = 1
-    tape = tape_of(tf, {p.name: p.name for p in tf.parameters})
+    tape = tape_of(tf, {p.name: p.name for p in tf.parameters})[0]
     key = node.keep(f"walked({json.dumps(tape)}, {json.dumps(at[0])}, {json.dumps(at)})")
     node.run()
     states = node.values[key]
@@ -209,7 +212,7 @@ def test_a_pole_that_a_zero_cancels_at_these_values_is_not_proved(node):
     # (a s + 1)/(b s + 1)/(c s + 1): where a is b, one pole is left.
     (tf,) = pipeline.derive_all(pipeline.loads(CANCELLING))
     at = [{"a": 2.0, "b": 2.0, "c": 0.5}, {"a": 2.0, "b": 2.5, "c": 0.5}]
-    tape = tape_of(tf, {p.name: p.name for p in tf.parameters})
+    tape = tape_of(tf, {p.name: p.name for p in tf.parameters})[0]
     key = node.keep(f"walked({json.dumps(tape)}, {json.dumps(at[1])}, {json.dumps(at)})")
     node.run()
     proved = [sorted(round(z["re"], 9) for z in state["poles"] if z["proved"]) for state in node.values[key]]
@@ -253,14 +256,14 @@ def test_the_discs_of_a_count_reach_from_corner_to_corner_and_no_farther(node):
 def test_numbers_that_are_no_doubles_have_a_radius_that_reaches_them():
     # 2^53 + 1 lies between the doubles 2^53 and 2^53 + 2, as far from both as a number can be.
     (tf,) = pipeline.derive_all(pipeline.loads(BETWEEN))
-    rows = tape_of(tf, {})["poles"][0]["tape"]
+    rows = tape_of(tf, {})[0]["poles"][0]["tape"]
     _, x, _, radius = max(row for row in rows if row[0] == "#")
     assert abs(2**53 + 1 - int(x)) <= radius <= 4
 
 
 def test_functions_whose_parameters_are_fixed_are_refused_with_a_reason():
     (tf,) = derived("wedge")[1]
-    assert "parameters are fixed" in tape_of(tf, {p.name: p.name for p in tf.parameters})["refused"]
+    assert "parameters are fixed" in tape_of(tf, {p.name: p.name for p in tf.parameters})[0]["refused"]
 
 
 # ------------------------------------------------------------------------------------------- arithmetic
@@ -337,3 +340,16 @@ def test_exp_cos_and_sin_keep_their_bounds_at_thirty_thousand_points(node):
 @pytest.mark.slow
 def test_exp_cos_and_sin_keep_their_bounds_at_ten_million_points(node):
     assert max(errors(node, *points(3_400_000))) < 1.0
+
+
+def test_a_page_locates_the_roots_of_a_function_once(monkeypatch):
+    model, calls = pipeline.load(ROOT / "symflex/templates/two_mass.toml"), []
+
+    def counted(*given, **options):
+        calls.append(given)
+        return locate(*given, **options)
+
+    monkeypatch.setattr("symflex.live.tape.locate", counted)
+    monkeypatch.setattr("symflex.roots.locate.locate", counted)
+    page = live_page([(model, [("X_tip", "F")])], Silent())
+    assert (len(calls), "X_tip/F" in page) == (1, True)
