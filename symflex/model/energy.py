@@ -17,12 +17,12 @@ A coordinate that elements or inputs are attached to is a node: its equation act
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
-from dataclasses import replace
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 
 from symflex.algebra import LAPLACE
-from symflex.errors import Diagnostic, Span, SpecError
+from symflex.errors import Diagnostic, Span, SpecError, Text
 from symflex.expressions import (
     Derivative,
     Equation,
@@ -46,6 +46,7 @@ from symflex.model.network import AsWritten, Draft, DraftElement
 from symflex.model.operating_point import (
     NOWHERE,
     SMOOTH,
+    AtRest,
     in_s,
     linearised,
     note_divisions,
@@ -53,7 +54,7 @@ from symflex.model.operating_point import (
 )
 from symflex.model.reading import Reader
 from symflex.model.settings import Setting, settled
-from symflex.model.spec import TableValue
+from symflex.model.spec import KeyValue, TableValue
 
 KEYS = ("coordinates", "kinetic", "potential", "dissipation", "forces", "constraints", "doc")
 EXAMPLE = 'for instance coordinates = ["x"], kinetic = "m*x\'^2/2", potential = "k*x^2/2"'
@@ -86,19 +87,7 @@ def read_energy(
         cycles.read(reader.read(partial(parse, brackets=True), reader.text(section, key, what)) or number(0))
         for key in KEYS[1:4]
     )
-    forces = dict[str, Expression]()
-    entry = section.get("forces")
-    table = reader.table(entry, f"forces of {what}", 'for instance forces = { x = "F" }') if entry else None
-    for force in table.entries if table else ():
-        if force.key not in {t.value for t in coordinates}:
-            message = f"'{force.key}' is not a coordinate of {what}"
-            reader.note(
-                "SF210", message, force.key_span, f"coordinates: {', '.join(t.value for t in coordinates)}"
-            )
-        elif (
-            value := reader.expression(force.value, f"force on '{force.key}'", quantities=False)
-        ) is not None:
-            forces[force.key] = cycles.read(value)
+    forces = _read_forces(reader, section.get("forces"), [t.value for t in coordinates], cycles)
     note_divisions(reader, constants, (kinetic, potential, dissipation, *equations, *forces.values()))
     if reader.problems:
         raise SpecError(*reader.problems)  # of unknowns without equation nothing true can be said
@@ -106,44 +95,83 @@ def read_energy(
     def varies(node: Expression) -> bool:
         return isinstance(node, Name | Derivative) and node.name not in {*taken, LAPLACE, "pi"}
 
-    held = [sum_of([e.left, negative(e.right)]) for e in equations]
-    multipliers = [f"lambda_{k}" for k in range(1, len(held) + 1)]
     try:
-        energies = [without_brackets(e, varies) for e in (kinetic, potential, dissipation)]
-        kinetic, potential, dissipation = energies
+        plain = [without_brackets(e, varies) for e in (kinetic, potential, dissipation)]
     except ValueError as error:
         raise _no_derivative(error, section.span) from None
-    parts = zip((kinetic, potential, dissipation, *held), (1, 0, 1) + (0,) * len(held), strict=True)
-    for node, most in ((n, most) for part, most in parts for n in walk(part)):
-        if node == Name(LAPLACE) or (isinstance(node, Derivative) and node.order > most):
-            message = f"'{format_expression(node)}' has no place in this part of {what}"
-            hint = "kinetic and dissipation have first rates, x'; potential and constraints have none"
-            reader.note("SF222", message, node.span or section.span, hint)
+    mechanism = _Mechanism(coordinates, plain[0], plain[1], plain[2], forces, equations)
+    mechanism.check_rates(reader, section.span)
     if reader.problems:
         raise SpecError(*reader.problems)
-    signals = []
     try:
-        for text in coordinates:
-            q, speed = Name(text.value), Derivative(text.value, 1)
-            terms = [
-                rate(derivative(kinetic, speed), varies),
-                negative(derivative(kinetic, q)),
-                derivative(potential, q),
-                derivative(dissipation, speed),
-                *(
-                    negative(product_of([Name(m), derivative(c, q)]))
-                    for m, c in zip(multipliers, held, strict=True)
-                ),
-            ]
-            right = forces.get(text.value, number(0))
-            signals.append(Signal(text.value, Equation(sum_of(terms), right, span=text.span), text.span))
+        return mechanism.motion(varies)
     except ValueError as error:
         raise _no_derivative(error, section.span) from None
-    signals += [
-        Signal(m, replace(e, left=c, right=number(0)), e.span)
-        for m, e, c in zip(multipliers, equations, held, strict=True)
-    ]
-    return tuple(signals)
+
+
+def _read_forces(
+    reader: Reader, entry: KeyValue | None, coordinates: Sequence[str], cycles: AsWritten
+) -> dict[str, Expression]:
+    """Return the generalised forces, by coordinates."""
+    forces: dict[str, Expression] = {}
+    what = "[energy]"
+    table = reader.table(entry, f"forces of {what}", 'for instance forces = { x = "F" }') if entry else None
+    for force in table.entries if table else ():
+        if force.key not in coordinates:
+            message = f"'{force.key}' is not a coordinate of {what}"
+            reader.note("SF210", message, force.key_span, f"coordinates: {', '.join(coordinates)}")
+            continue
+        value = reader.expression(force.value, f"force on '{force.key}'", quantities=False)
+        if value is not None:
+            forces[force.key] = cycles.read(value)
+    return forces
+
+
+@dataclass(frozen=True, slots=True)
+class _Mechanism:
+    """What ``[energy]`` says: energies, what acts, and what holds."""
+
+    coordinates: Sequence[Text]
+    kinetic: Expression
+    potential: Expression
+    dissipation: Expression
+    forces: Mapping[str, Expression]
+    constraints: Sequence[Equation]
+
+    def _held(self) -> list[tuple[str, Expression]]:
+        """Return what every constraint holds at zero, with its multiplier."""
+        residuals = (sum_of([e.left, negative(e.right)]) for e in self.constraints)
+        return [(f"lambda_{k}", residual) for k, residual in enumerate(residuals, 1)]
+
+    def check_rates(self, reader: Reader, span: Span) -> None:
+        """Note rates of a higher order than an energy has, and s."""
+        parts = [(self.kinetic, 1), (self.potential, 0), (self.dissipation, 1)]
+        parts += [(residual, 0) for _, residual in self._held()]
+        for node, most in ((n, most) for part, most in parts for n in walk(part)):
+            if node == Name(LAPLACE) or (isinstance(node, Derivative) and node.order > most):
+                message = f"'{format_expression(node)}' has no place in this part of [energy]"
+                hint = "kinetic and dissipation have first rates, x'; potential and constraints have none"
+                reader.note("SF222", message, node.span or span, hint)
+
+    def motion(self, varies: Callable[[Expression], bool]) -> tuple[Signal, ...]:
+        """Return Lagrange's equations of the first kind; ValueError for what has no derivative."""
+        signals = []
+        for text in self.coordinates:
+            q, speed = Name(text.value), Derivative(text.value, 1)
+            terms = [
+                rate(derivative(self.kinetic, speed), varies),
+                negative(derivative(self.kinetic, q)),
+                derivative(self.potential, q),
+                derivative(self.dissipation, speed),
+                *(negative(product_of([Name(m), derivative(c, q)])) for m, c in self._held()),
+            ]
+            force = self.forces.get(text.value, number(0))
+            signals.append(Signal(text.value, Equation(sum_of(terms), force, span=text.span), text.span))
+        signals += [
+            Signal(m, replace(e, left=c, right=number(0)), e.span)
+            for e, (m, c) in zip(self.constraints, self._held(), strict=True)
+        ]
+        return tuple(signals)
 
 
 def _no_derivative(error: ValueError, span: Span | None) -> SpecError:
@@ -172,16 +200,7 @@ def with_motion(
     constants.declare(made, cycles.eager)
     parameters = {p.name: p for p in (*draft.declared, *made)}
     if energy:
-        rest = rest or NOWHERE
-        multipliers = [x.name for x in energy if x.name.startswith("lambda_")]
-        known = {m: Name(f"{m}_0") for m in multipliers if m not in rest.values}
-        rest = replace(
-            rest,
-            values={**rest.values, **known},
-            multipliers=tuple(v.name for v in known.values()),
-            coordinates=tuple(x.name for x in energy if x.name not in multipliers),
-            constraints=tuple(multipliers),
-        )
+        rest = _with_multipliers(rest or NOWHERE, [x.name for x in energy])
     signals, found, point, solved = linearised(
         reader,
         (*draft.signals, *energy),
@@ -206,6 +225,19 @@ def with_motion(
         draft, declared=tuple(declared), definitions=definitions, signals=signals, outputs=outputs
     )
     return _hung(draft, {x.name for x in energy}), point
+
+
+def _with_multipliers(rest: AtRest, unknowns: Sequence[str]) -> AtRest:
+    """Return what is known at rest, with names for multipliers of no given value."""
+    multipliers = tuple(name for name in unknowns if name.startswith("lambda_"))
+    unnamed = {m: Name(f"{m}_0") for m in multipliers if m not in rest.values}
+    return replace(
+        rest,
+        values={**rest.values, **unnamed},
+        multipliers=tuple(v.name for v in unnamed.values()),
+        coordinates=tuple(name for name in unknowns if name not in multipliers),
+        constraints=multipliers,
+    )
 
 
 def _hung(draft: Draft, coordinates: Collection[str]) -> Draft:

@@ -163,18 +163,29 @@ def _read_ports(
     )
     if not is_good or a is None or b is None or c is None or d is None:
         return []
+    return _state_signals(states, [x for x in sources if x is not None], outputs, (a, b, c, d))
+
+
+def _state_signals(
+    states: Sequence[Text],
+    sources: Sequence[Expression],
+    outputs: Sequence[Text],
+    matrices: Sequence[Sequence[Sequence[Expression]]],
+) -> list[Signal]:
+    """Return ``s x = A x + B u`` and ``y = C x + D u``, a signal per row."""
+    a, b, c, d = matrices
     moving = [Name(x.value, span=x.span) for x in states]
-    columns = [*moving, *(x for x in sources if x is not None)]
+    columns = [*moving, *sources]
     sums = [
-        sum_of(_times(x, name) for x, name in zip((*left, *right), columns, strict=True))
-        for left, right in zip((*a, *c), (*b, *d), strict=True)
+        sum_of(_times(x, name) for x, name in zip((*of_states, *of_sources), columns, strict=True))
+        for of_states, of_sources in zip((*a, *c), (*b, *d), strict=True)
     ]
-    read: list[Expression] = [
+    rows: list[Expression] = [
         Equation(Product((Name(LAPLACE), x)), total, span=x.span)
         for x, total in zip(moving, sums, strict=False)
     ]
-    read += [replace(total, span=y.span) for total, y in zip(sums[order:], outputs, strict=True)]
-    return [Signal(x.value, e, x.span) for x, e in zip((*states, *outputs), read, strict=True)]
+    rows += [replace(total, span=y.span) for total, y in zip(sums[len(states) :], outputs, strict=True)]
+    return [Signal(x.value, row, x.span) for x, row in zip((*states, *outputs), rows, strict=True)]
 
 
 def _times(entry: Expression, factor: Expression) -> Expression:

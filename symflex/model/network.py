@@ -182,19 +182,11 @@ def _values(
             like = any(p.name == parameter.default for p in element.parameters)
             expression = given.get(parameter.default) if like else signed_number(Fraction(parameter.default))
         elif applies:
-            possible = [p for p in element.parameters if p.applies(choices.values())]
-            listed = ", ".join(p.name for p in possible if not p.of)
-            products = ", ".join(f"{p.name} for {'*'.join(p.of)}" for p in possible if p.of)
-            # Beside EI, I is needed for another product alone: that one is missing, and said once.
-            with_it = [p for p in possible if parameter.name in p.of]
-            given_of = [p for p in with_it if table.get(p.name) is not None]
-            left = [p for p in with_it if given_of and not any(map(table.get, (p.name, *p.of)))]
-            missing = left[0] if left else parameter
+            missing = _missing(table, element, choices, parameter)
             if missing not in said and missing.name not in meant:
                 said.append(missing)
-                hint = f"parameters of {element.type_name}: {listed}" + f"; {products}" * bool(products)
                 message = f"{who} lacks {missing.name}, {missing.doc}"
-                reader.note("SF214", message, entry.key_span, hint)
+                reader.note("SF214", message, entry.key_span, _parameters_of(element, choices))
         else:
             continue
         if expression is None:
@@ -202,6 +194,24 @@ def _values(
         else:
             given[parameter.name] = expression
     return tuple(given.items()) if complete else None
+
+
+def _missing(
+    table: TableValue, element: Element, choices: Mapping[str, str], parameter: ParameterPort
+) -> ParameterPort:
+    """Return the parameter that is missing: beside EI, I is needed for another product alone."""
+    with_it = [p for p in element.parameters if p.applies(choices.values()) and parameter.name in p.of]
+    has_others = any(table.get(p.name) is not None for p in with_it)
+    lacking = [p for p in with_it if has_others and not any(map(table.get, (p.name, *p.of)))]
+    return lacking[0] if lacking else parameter
+
+
+def _parameters_of(element: Element, choices: Mapping[str, str]) -> str:
+    """Say which parameters an element has."""
+    possible = [p for p in element.parameters if p.applies(choices.values())]
+    listed = ", ".join(p.name for p in possible if not p.of)
+    products = ", ".join(f"{p.name} for {'*'.join(p.of)}" for p in possible if p.of)
+    return f"parameters of {element.type_name}: {listed}" + f"; {products}" * bool(products)
 
 
 def _spare(table: TableValue, element: Element, choices: Mapping[str, str]) -> Mapping[str, ParameterPort]:
@@ -648,10 +658,14 @@ class Draft:
     point: OperatingPoint | None = None  # at which the equations of motion are linear
 
     @property
+    def parameters(self) -> list[str]:
+        """Names of parameters, those of blocks last."""
+        return [*(p.name for p in self.declared), *(p.name for p in self.inherited)]
+
+    @property
     def constants(self) -> set[str]:
         """Names of parameters, definitions and blocks."""
-        parameters = {p.name for p in self.declared} | {p.name for p in self.inherited}
-        return parameters | {d.name for d in self.definitions} | {b.name for b in self.blocks}
+        return {*self.parameters, *(d.name for d in self.definitions), *(b.name for b in self.blocks)}
 
     @property
     def loads(self) -> set[str]:

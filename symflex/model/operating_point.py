@@ -55,7 +55,7 @@ from symflex.model.solve_at_rest import EXAMPLE, Left, Solving
 from symflex.quantities import DIMENSIONLESS, Quantity
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping
+    from collections.abc import Collection, Iterable, Mapping, Sequence
 
     from symflex.model.spec import TableValue
 
@@ -165,24 +165,7 @@ def linearised(
         rewritten = {n: Equation(*map(in_s, plain[n]), span=e.span) for n, e in equations.items()}
         kept = tuple(replace(x, expression=rewritten.get(x.name, x.expression)) for x in signals)
         return kept, [], None, {}
-    for x in signals:
-        if x.name not in equations and all(_base(n) in moving for n in point.leaves(x.expression)):
-            point.take_signal(x)
-    given = [
-        Equation(Name(name), value, span=point.values[name].span)
-        for name, value in point.signals.items()
-        if name in point.values
-    ]
-    parts = (*equations.values(), *point.signals.values())
-    products = [n for e in parts for n in nodes(e) if isinstance(n, Product)]
-    after_s = {id(f) for n in products if any(map(_order_of_s, n.factors)) for f in n.factors}
-    leaves = [n for e in parts for n in nodes(e) if point.varies(n) and id(n) not in after_s]
-    point.bare = {n for n in leaves if isinstance(n, Name)}
-    for equation in (*equations.values(), *given):
-        point.infer_rates(equation)
-    for each in given:  # and to be right
-        left = point.at_rest(sum_of([each.left, negative(each.right)]))
-        point.left_over.append(Left(left, each))
+    point.follow(signals, equations, moving)
     made = {name: point.linear(equation) for name, equation in equations.items()}
     if None not in made.values():
         point.check_names(rest)
@@ -246,6 +229,29 @@ class _AboutRest:
         rates = {n: v for n, v in rest.values.items() if n.endswith("'") and not is_number(v, 0)}
         self.rates = {Name(n[:-1]): v for n, v in rates.items() if not n.endswith("''")}
         self.drifting: set[Expression] = set()  # names in what does not stay as it is at these rates
+
+    def follow(
+        self, signals: Sequence[Signal], equations: Mapping[str, Equation], moving: Collection[str]
+    ) -> None:
+        """Take signals, and find the rates that follow from equations and from given values."""
+        for x in signals:
+            if x.name not in equations and all(_base(n) in moving for n in self.leaves(x.expression)):
+                self.take_signal(x)
+        given = [
+            Equation(Name(name), value, span=self.values[name].span)
+            for name, value in self.signals.items()
+            if name in self.values
+        ]
+        parts = (*equations.values(), *self.signals.values())
+        products = [n for e in parts for n in nodes(e) if isinstance(n, Product)]
+        after_s = {id(f) for n in products if any(map(_order_of_s, n.factors)) for f in n.factors}
+        leaves = [n for e in parts for n in nodes(e) if self.varies(n) and id(n) not in after_s]
+        self.bare = {n for n in leaves if isinstance(n, Name)}
+        for equation in (*equations.values(), *given):
+            self.infer_rates(equation)
+        for each in given:  # and to be right
+            residual = self.at_rest(sum_of([each.left, negative(each.right)]))
+            self.left_over.append(Left(residual, each))
 
     def leaves(self, expression: Expression) -> list[Expression]:
         """Return each leaf that varies in time once."""

@@ -42,6 +42,7 @@ from symflex.model.declarations import (
     read_signals,
     with_formulas_defined,
 )
+from symflex.model.dimensions import DimensionSystem
 from symflex.model.equations import check_unknowns, read_equations, read_state_equations
 from symflex.model.headings import CONSEQUENCES, SECTIONS, check_header, read_section, settled_problems
 from symflex.model.linearity import check_equation, check_expression, without_signal
@@ -70,7 +71,7 @@ from symflex.model.reading import QuantityLiteral, Reader
 from symflex.model.scope import ModelScope, build_scope
 from symflex.model.settings import Setting, check_names, settled
 from symflex.model.signs import Line, check_ranges, ranged_values
-from symflex.model.spec import Spec, parse_with_recovery
+from symflex.model.spec import Spec, TableValue, parse_with_recovery
 from symflex.model.units import (
     block_unit,
     check_units,
@@ -131,6 +132,36 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     reader = Reader()
     check_header(reader, spec)
     sections = with_formulas_defined({name: read_section(reader, spec, name) for name in SECTIONS})
+    draft = _read_draft(reader, spec, sections, origin)
+    defined, inputs, outputs = draft.definitions, draft.inputs, draft.outputs
+    twins = _refuse_twins(reader, draft)
+    draft = rewritten(
+        Specified(reader, sections, origin.loads.settings), _with_equations(reader, sections, draft)
+    )
+    broken = broken_names(sections, draft) | twins
+    model = _finish(reader, draft, broken)
+    are_read = all(
+        len(entries) == len(section.entries)
+        for entries, section in ((outputs, sections["outputs"]), (inputs, sections["inputs"]))
+        if section
+    )
+    model = _with_requests(reader, spec, sections, draft, model, broken, are_read=are_read)
+    problems = settled_problems(spec, reader.problems)
+    if problems:
+        raise SpecError(*_in_order(problems, spec.source))
+    inner = [w for b in model.blocks if b.submodel is not None for w in b.submodel.warnings]
+    return replace(
+        model,
+        conversions=_conversions(model, defined, draft.cycles.converted),
+        warnings=tuple(_in_order([*model.warnings, *unused(model), *inner], spec.source)),
+    )
+
+
+Sections = Mapping[str, TableValue | None]
+
+
+def _read_draft(reader: Reader, spec: Spec, sections: Sections, origin: Origin) -> Draft:
+    """Return what sections say, but for equations of motion and fields."""
     declared = read_parameters(reader, sections["parameters"], sections["definitions"])
     declared = settled(reader, declared, origin.loads.settings)
     definitions = read_definitions(reader, sections["definitions"])
@@ -141,20 +172,31 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     outputs = read_outputs(reader, sections["outputs"])
     _check_count(reader, spec, outputs, inputs)
     inherited = _inherited_parameters(reader, declared, blocks)
-    twins = _refuse_twins(
-        reader, [*(p.name for p in declared), *(p.name for p in inherited)], definitions, blocks
-    )
-    taken = {p.name for p in declared} | {p.name for p in inherited}
-    taken |= {d.name for d in definitions} | {b.name for b in blocks}
-    signals += read_state_equations(reader, sections["blocks"], taken, {x.name for x in signals})
-    signals += read_equations(reader, sections["equations"], taken, {x.name for x in signals})
-    draft = Draft(
+    return Draft(
         declared, inherited, definitions, (), elements, inputs, blocks, signals, outputs, AsWritten()
     )
-    draft = rewritten(Specified(reader, sections, origin.loads.settings), draft)
-    broken = broken_names(sections, draft) | twins
-    model = _finish(reader, draft, broken)
-    later, hints, point, cycles = Reader(), Reader(), draft.point, draft.cycles
+
+
+def _with_equations(reader: Reader, sections: Sections, draft: Draft) -> Draft:
+    """Return a draft with the unknowns of state equations and of ``[equations]`` among its signals."""
+    signals = draft.signals
+    for read, section in ((read_state_equations, "blocks"), (read_equations, "equations")):
+        signals += read(reader, sections[section], draft.constants, {x.name for x in signals})
+    return replace(draft, signals=signals)
+
+
+def _with_requests(
+    reader: Reader,
+    spec: Spec,
+    sections: Sections,
+    draft: Draft,
+    model: Model,
+    broken: frozenset[str],
+    *,
+    are_read: bool,
+) -> Model:
+    """Return a model with what is asked of it: analysis, figures, drawing and printed formulas."""
+    requests, hints, point, cycles = Reader(), Reader(), draft.point, draft.cycles
     solved_with = point.solved_with if point else ()
     model = replace(
         model,
@@ -164,29 +206,16 @@ def resolve(spec: Spec, origin: Origin) -> Model:
         operating_point=point,
         parameters=tuple(replace(p, is_solved_with=p.name in solved_with) for p in model.parameters),
         analysis=read_analysis(reader, sections["analysis"]),
-        figures=read_figures(later, sections["figures"], model),
+        figures=read_figures(requests, sections["figures"], model),
         drawing=read_drawing(hints, sections["drawing"], model),
-        published=tuple(map(cycles.printed, read_published(later, sections["published"], model))),
+        published=tuple(map(cycles.printed, read_published(requests, sections["published"], model))),
     )
-    model = _with_names_in_print(reader, later, model, broken, cycles)
+    model = _with_names_in_print(reader, requests, model, broken, cycles)
     # A transfer function is missing where its output or input could not be read: no second mistake.
-    whole = all(
-        len(entries) == len(section.entries)
-        for entries, section in ((outputs, sections["outputs"]), (inputs, sections["inputs"]))
-        if section
-    )
-    reader.take([p for p in later.problems if whole or p.code != "SF218"])
+    reader.take([p for p in requests.problems if are_read or p.code != "SF218"])
     # A node may be missing for the same reason.
     reader.take([p for p in hints.problems if not reader.problems or p.code != "SF210"])
-    problems = settled_problems(spec, reader.problems)
-    if problems:
-        raise SpecError(*_in_order(problems, spec.source))
-    inner = [w for b in model.blocks if b.submodel is not None for w in b.submodel.warnings]
-    return replace(
-        model,
-        conversions=_conversions(model, definitions, cycles.converted),
-        warnings=tuple(_in_order([*model.warnings, *unused(model), *inner], spec.source)),
-    )
+    return model
 
 
 def _with_names_in_print(
@@ -261,16 +290,11 @@ def _with_lines(first: Diagnostic, *others: Diagnostic) -> Diagnostic:
     return replace(first, hint=f"{first.hint}; {also}" if first.hint else also)
 
 
-def _refuse_twins(
-    reader: Reader,
-    parameters: Sequence[str],
-    definitions: Sequence[Definition],
-    blocks: Sequence[PlacedBlock],
-) -> frozenset[str]:
+def _refuse_twins(reader: Reader, draft: Draft) -> frozenset[str]:
     """Note and return the names that two of parameters, definitions and blocks bear."""
     twins: set[str] = set()
-    taken = dict.fromkeys(parameters, "a parameter")
-    for what, group in (("a definition", definitions), ("a block", blocks)):
+    taken = dict.fromkeys(draft.parameters, "a parameter")
+    for what, group in (("a definition", draft.definitions), ("a block", draft.blocks)):
         for item in group:
             if item.name in taken:
                 message = f"'{item.name}' is {what} and {taken[item.name]}"
@@ -310,9 +334,8 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> Model:
     nodes = {n.name: n for n in draft.nodes}
     placed = tuple(_place(d, nodes) for d in draft.elements)
     inputs = tuple(d.input for d in draft.inputs)
-    names = [*(p.name for p in draft.declared), *(p.name for p in draft.inherited)]
     scope = build_scope(
-        names,
+        draft.parameters,
         draft.definitions,
         draft.nodes,
         placed,
@@ -322,6 +345,47 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> Model:
         broken,
         draft.fields,
     )
+    unsound = _check_names(reader, draft, scope)
+    system = _check_values(reader, draft, scope, placed, unsound)
+    implied = implied_units(placed, draft.blocks)
+    parameters = [
+        p.resolve(implied.get(p.name, ""), is_converted=p.name in draft.cycles.eager) for p in draft.declared
+    ]
+    units = {v: d for v in measured_variables(draft) if (d := system.dimension(system.variable(v)))}
+    return Model(
+        parameters=(*parameters, *draft.inherited),
+        definitions=tuple(replace(d, expression=lower(d.expression)) for d in draft.definitions),
+        nodes=draft.nodes,
+        elements=tuple(map(_in_si_units, placed)),
+        signals=tuple(replace(x, expression=lower(x.expression)) for x in draft.signals),
+        blocks=tuple(
+            replace(b, values=tuple((n, lower(v, block_unit(b, n))) for n, v in b.values))
+            for b in draft.blocks
+        ),
+        fields=tuple(f.rewritten(lower) for f in draft.fields),
+        inputs=tuple(measured_input(i, system) for i in inputs),
+        outputs=tuple(_measured(o, system) for o in draft.outputs),
+        signal_units=tuple(units.items()),
+        quotients=tuple(quotients(draft, system)),
+        warnings=tuple(doubtful_units(draft.declared)),
+    )
+
+
+def _in_si_units(use: PlacedElement) -> PlacedElement:
+    """Return an element whose values are plain expressions, with its loss factors in them."""
+    values = tuple((name, lower(value, port_unit(use, name))) for name, value in use.values)
+    return replace(use, values=with_loss(use.element, values))
+
+
+def _measured(output: Output, system: DimensionSystem) -> Output:
+    """Return an output with the unit that follows for it."""
+    dimension = system.dimension(system.measure(output.expression))
+    unit = "" if dimension is None else str(dimension)
+    return replace(output, expression=lower(output.expression), dimension=dimension, unit=unit)
+
+
+def _check_names(reader: Reader, draft: Draft, scope: ModelScope) -> set[Span | None]:
+    """Check what names mean and that signals are linear; return the spans of expressions that are unsound."""
     unsound: set[Span | None] = set()
     scopes: dict[Kind, ModelScope] = {"varying": scope.varying(), "constant": scope, "signal": scope}
     unreal = {p.name for p in draft.inherited if p.is_imaginary}
@@ -334,8 +398,22 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> Model:
         if problems:
             unsound.add(expression.span)
     acting = [e for e, kind in _all_expressions(replace(draft, signals=(), outputs=())) if kind == "signal"]
-    equations = [e for f in draft.fields for e in (*f.equations, *f.conditions)]
-    check_unknowns(reader, draft.signals, [*acting, *equations])
+    check_unknowns(reader, draft.signals, [*acting, *_field_equations(draft)])
+    return unsound
+
+
+def _field_equations(draft: Draft) -> list[Expression]:
+    return [e for f in draft.fields for e in (*f.equations, *f.conditions)]
+
+
+def _check_values(
+    reader: Reader,
+    draft: Draft,
+    scope: ModelScope,
+    placed: Sequence[PlacedElement],
+    unsound: set[Span | None],
+) -> DimensionSystem:
+    """Check ranges, fields and units, and points along x; return what everything is measured in."""
     parameters = [p.resolve(is_converted=p.name in draft.cycles.eager) for p in draft.declared]
     around = _surroundings(draft, scope, (*parameters, *draft.inherited))
     for ranged in ranged_values(draft):
@@ -345,7 +423,7 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> Model:
     check_ranges(reader, draft, around.line, unsound, is_along=False)
     before = len(reader.problems)
     fields_placed = check_fields(reader, draft.fields, around)
-    unsound |= {e.span for e in equations if _holds(e, reader.problems[before:])}
+    unsound |= {e.span for e in _field_equations(draft) if _holds(e, reader.problems[before:])}
     system = check_units(reader, draft, placed, scope, unsound, fields_placed)
     reader.take(system.problems)
     # A section of other units has other signs, too.
@@ -356,41 +434,7 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> Model:
     pointed += [e for e, kind in _all_expressions(draft) if kind == "signal"]
     for expression in pointed if along else ():
         check_points(reader, expression, along, around)
-    implied = implied_units(placed, draft.blocks)
-    parameters = [
-        p.resolve(implied.get(p.name, ""), is_converted=p.name in draft.cycles.eager) for p in draft.declared
-    ]
-    units = {v: d for v in measured_variables(draft) if (d := system.dimension(system.variable(v)))}
-    return Model(
-        parameters=(*parameters, *draft.inherited),
-        definitions=tuple(replace(d, expression=lower(d.expression)) for d in draft.definitions),
-        nodes=draft.nodes,
-        elements=tuple(
-            replace(
-                e, values=with_loss(e.element, tuple((n, lower(v, port_unit(e, n))) for n, v in e.values))
-            )
-            for e in placed
-        ),
-        signals=tuple(replace(x, expression=lower(x.expression)) for x in draft.signals),
-        blocks=tuple(
-            replace(b, values=tuple((n, lower(v, block_unit(b, n))) for n, v in b.values))
-            for b in draft.blocks
-        ),
-        fields=tuple(f.rewritten(lower) for f in draft.fields),
-        inputs=tuple(measured_input(i, system) for i in inputs),
-        outputs=tuple(
-            replace(
-                o,
-                expression=lower(o.expression),
-                dimension=(d := system.dimension(system.measure(o.expression))),
-                unit="" if d is None else str(d),
-            )
-            for o in draft.outputs
-        ),
-        signal_units=tuple(units.items()),
-        quotients=tuple(quotients(draft, system)),
-        warnings=tuple(doubtful_units(draft.declared)),
-    )
+    return system
 
 
 def _in_radians(model: Model, coordinates: Iterable[str]) -> tuple[Output, ...]:

@@ -244,58 +244,23 @@ def build_scope(
     fields: Sequence[FieldProblem] = (),
 ) -> ModelScope:
     """Return what every name of a model means."""
-    meanings: dict[str, list[Meaning]] = {
-        "s": [Meaning("laplace", "s", "the Laplace variable")],
-        "pi": [Meaning("pi", "pi", "the number pi")],
-    }
-    attributes: dict[tuple[str, str], list[Meaning]] = {}
-    owners: dict[str, list[str]] = {}
-
-    def add(name: str, meaning: Meaning) -> None:
-        meanings.setdefault(name, []).append(meaning)
-
-    def offer(owner: str, name: str, meaning: Meaning) -> None:
-        attributes.setdefault((owner, name), []).append(meaning)
-        owners.setdefault(owner, []).append(name)
-
-    for name in parameters:
-        add(name, Meaning("parameter", name, f"the parameter '{name}'"))
-    for definition in definitions:
-        add(definition.name, Meaning("definition", definition.name, f"the definition '{definition.name}'"))
-    for block in blocks:
-        add(block.name, Meaning("block", block.name, f"the block '{block.name}'"))
-    for node in nodes:
-        variables = [Variable("node", node.name, component) for component in node.components]
-        for variable in (v for v in variables if v.component):
-            described = f"node '{variable}'"
-            offer(node.name, variable.component, Meaning("variable", node.name, described, variable))
-        if node.domain != "plane":  # where bare, it could be x or y
-            add(node.name, Meaning("variable", node.name, f"the node '{node.name}'", variables[0]))
+    found = _Meanings()
+    found.add_constants(parameters, definitions, blocks)
+    found.add_nodes(nodes)
     for signal in signals:
-        variable = Variable("signal", signal.name)
-        add(signal.name, Meaning("variable", signal.name, f"the signal '{signal.name}'", variable))
+        described = f"the signal '{signal.name}'"
+        found.add(Meaning("variable", signal.name, described, Variable("signal", signal.name)))
     for use in elements:
         for quantity in use.element.quantities(dict(use.domains)):
             variable = Variable("through", use.name, quantity)
             described = f"a quantity of {use.element.type_name} '{use.name}'"
-            offer(use.name, quantity, Meaning("through", use.name, described, variable))
+            found.offer(quantity, Meaning("through", use.name, described, variable))
     for source in inputs:
-        variable = Variable("input", source.name)
-        kind = INPUT_KINDS.get(source.kind)
-        # What the node of its own name is needs no name: both readings are one value.
-        names = [str(Variable("node", r.node, r.component)) for r in source.nodes]
-        if not (kind is not None and kind.order == 0 and names == [source.name]):
-            add(source.name, Meaning("variable", source.name, f"the input '{source.name}'", variable))
-        # A voltage input has always been allowed to bear the name of an element, whose current is then read.
-        if kind is None or not kind.is_imposed or (source.name, "i") in attributes:
-            continue
-        described = f"the reaction of the input '{source.name}'"
-        meaning = Meaning("through", source.name, described, kind.delivered(source.name))
-        offer(source.name, kind.quantity, meaning)
+        found.add_input(source)
     return ModelScope(
-        {name: tuple(candidates) for name, candidates in meanings.items()},
-        {name: tuple(candidates) for name, candidates in attributes.items()},
-        {name: tuple(candidates) for name, candidates in owners.items()},
+        {name: tuple(candidates) for name, candidates in found.bare.items()},
+        {name: tuple(candidates) for name, candidates in found.offered.items()},
+        found.owners(),
         broken,
         {unknown: f.name for f in fields for unknown in f.unknowns},
         along={
@@ -306,6 +271,69 @@ def build_scope(
             for name in quantity
         },
     )
+
+
+@dataclass(frozen=True, slots=True)
+class _Meanings:
+    """What names can be read as, while a scope is built."""
+
+    bare: dict[str, list[Meaning]] = field(
+        default_factory=lambda: {
+            LAPLACE: [Meaning("laplace", LAPLACE, "the Laplace variable")],
+            "pi": [Meaning("pi", "pi", "the number pi")],
+        }
+    )
+    offered: dict[tuple[str, str], list[Meaning]] = field(default_factory=dict)  # ``owner.name``
+
+    def add(self, meaning: Meaning) -> None:
+        """Add what a bare name can mean."""
+        self.bare.setdefault(meaning.name, []).append(meaning)
+
+    def offer(self, name: str, meaning: Meaning) -> None:
+        """Add what a name after ``owner.`` can mean."""
+        self.offered.setdefault((meaning.name, name), []).append(meaning)
+
+    def owners(self) -> dict[str, tuple[str, ...]]:
+        """Return the names that may stand after each ``owner.``."""
+        owners: dict[str, list[str]] = {}
+        for owner, name in self.offered:
+            owners.setdefault(owner, []).append(name)
+        return {owner: tuple(names) for owner, names in owners.items()}
+
+    def add_constants(
+        self, parameters: Iterable[str], definitions: Iterable[Definition], blocks: Iterable[PlacedBlock]
+    ) -> None:
+        """Add what does not vary in time."""
+        for name in parameters:
+            self.add(Meaning("parameter", name, f"the parameter '{name}'"))
+        for definition in definitions:
+            self.add(Meaning("definition", definition.name, f"the definition '{definition.name}'"))
+        for block in blocks:
+            self.add(Meaning("block", block.name, f"the block '{block.name}'"))
+
+    def add_nodes(self, nodes: Iterable[NetworkNode]) -> None:
+        """Add nodes, and their components in the plane."""
+        for node in nodes:
+            variables = [Variable("node", node.name, component) for component in node.components]
+            for variable in (v for v in variables if v.component):
+                described = f"node '{variable}'"
+                self.offer(variable.component, Meaning("variable", node.name, described, variable))
+            if node.domain != "plane":  # where bare, it could be x or y
+                self.add(Meaning("variable", node.name, f"the node '{node.name}'", variables[0]))
+
+    def add_input(self, source: Input) -> None:
+        """Add an input, and the reaction of one that imposes a motion or a voltage."""
+        kind = INPUT_KINDS.get(source.kind)
+        # What the node of its own name is needs no name: both readings are one value.
+        names = [str(Variable("node", r.node, r.component)) for r in source.nodes]
+        if not (kind is not None and kind.order == 0 and names == [source.name]):
+            variable = Variable("input", source.name)
+            self.add(Meaning("variable", source.name, f"the input '{source.name}'", variable))
+        # A voltage input has always been allowed to bear the name of an element, whose current is then read.
+        if kind is None or not kind.is_imposed or (source.name, "i") in self.offered:
+            return
+        described = f"the reaction of the input '{source.name}'"
+        self.offer(kind.quantity, Meaning("through", source.name, described, kind.delivered(source.name)))
 
 
 def scope_of(model: Model) -> ModelScope:

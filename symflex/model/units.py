@@ -54,6 +54,32 @@ def check_units(
     blocks = {b.name: _block_gain(b) for b in draft.blocks}
     definitions = {d.name: d.expression for d in draft.definitions}
     system = DimensionSystem(scope, quantities, definitions, dimensions, blocks, laplace, infers=infers)
+    _compare(reader, draft, placed, system, unsound)
+    _check_fields(draft, system, unsound, fields_placed)
+    _measure_signals(draft, system, unsound)
+    # Angles and shares are numbers.
+    measured = (q for q in quantities.values() if q is not None and q.dimension != DIMENSIONLESS)
+    has_units = any((placed, dimensions, *measured))
+    system.settle([p.name for p in draft.declared if p.quantity] + [*definitions] if has_units else ())
+    if system.problems and infers and not system.lacks_an_s:
+        # What has no unit may have been meant to have several.
+        return check_units(reader, draft, placed, scope, unsound, fields_placed, laplace, infers=False)
+    disagrees = any(d.code in ("SF203", "SF205") for d in system.problems)
+    if disagrees and not (has_units or draft.fields) and laplace != DIMENSIONLESS:
+        # A model of numbers alone, as forums have them: there s is a number, too.
+        plain = check_units(reader, draft, placed, scope, unsound, fields_placed, DIMENSIONLESS, infers=False)
+        return system if plain.problems else plain
+    return system
+
+
+def _compare(
+    reader: Reader,
+    draft: Draft,
+    placed: Sequence[PlacedElement],
+    system: DimensionSystem,
+    unsound: Collection[Span | None],
+) -> None:
+    """Compare what parameters of elements and blocks are measured in with what these demand."""
 
     def require(expression: Expression, unit: str, what: str, doc: str, *, varies: bool = False) -> None:
         if expression.span in unsound:
@@ -79,7 +105,10 @@ def check_units(
             ports = block.block.parameters if block.block else ()
             doc = next((p.doc for p in ports if p.name == name), "")
             require(expression, block_unit(block, name), f"{name} of block '{block.name}'", doc)
-    _check_fields(draft, system, unsound, fields_placed)
+
+
+def _measure_signals(draft: Draft, system: DimensionSystem, unsound: Collection[Span | None]) -> None:
+    """Compare the terms of every signal and equation, and measure outputs."""
     for signal in draft.signals:
         if isinstance(signal.expression, Equation):
             if signal.expression.span not in unsound:
@@ -90,19 +119,6 @@ def check_units(
             system.equate(Variable("signal", signal.name), signal.expression)
     for output in draft.outputs:
         system.measure(output.expression)
-    # Angles and shares are numbers.
-    measured = (q for q in quantities.values() if q is not None and q.dimension != DIMENSIONLESS)
-    has_units = any((placed, dimensions, *measured))
-    system.settle([p.name for p in draft.declared if p.quantity] + [*definitions] if has_units else ())
-    if system.problems and infers and not system.lacks_an_s:
-        # What has no unit may have been meant to have several.
-        return check_units(reader, draft, placed, scope, unsound, fields_placed, laplace, infers=False)
-    disagrees = any(d.code in ("SF203", "SF205") for d in system.problems)
-    if disagrees and not (has_units or draft.fields) and laplace != DIMENSIONLESS:
-        # A model of numbers alone, as forums have them: there s is a number, too.
-        plain = check_units(reader, draft, placed, scope, unsound, fields_placed, DIMENSIONLESS, infers=False)
-        return system if plain.problems else plain
-    return system
 
 
 def _check_fields(

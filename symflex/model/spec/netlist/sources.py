@@ -50,11 +50,7 @@ def controlled(line: PlacedCard) -> None:
     plain, given = card.options(3)
     kind = plain[0].lower() if plain else ""
     if letter == "N" or kind == "opamp":
-        at = 3 + (letter != "N")
-        inputs = line.nodes(at, 2)
-        rest = [w for w in card.words[at + 2 :] if w != "N"]
-        line.check(rest[1:], given)
-        _op_amp(line, name, inputs, ends, A=format_expression(line.number(rest[0])) if rest else "")
+        _simulated_op_amp(line, name, ends, given)
         return
     is_voltage = letter in "EH"
     line.carries_own(name, is_voltage=is_voltage)
@@ -96,6 +92,17 @@ def controlled(line: PlacedCard) -> None:
         line.source(name, ends, format_expression(value), is_voltage=is_voltage)
 
     line.build.later.append(finish)
+
+
+def _simulated_op_amp(
+    line: PlacedCard, name: str, ends: Sequence[str], given: Mapping[str, Sequence[str]]
+) -> None:
+    """Take the ideal op-amp of a simulator: N, or E with ``opamp`` between its nodes."""
+    first = 3 + (line.letter != "N")
+    inputs = line.nodes(first, 2)
+    gain = [w for w in line.card.words[first + 2 :] if w != "N"]
+    line.check(gain[1:], given)
+    _op_amp(line, name, inputs, ends, A=format_expression(line.number(gain[0])) if gain else "")
 
 
 def _slopes(line: PlacedCard, words: Sequence[str], count: int) -> list[str]:
