@@ -257,6 +257,8 @@ def irreducible_factors(polynomial: fmpz_mpoly) -> tuple[int, list[tuple[fmpz_mp
     >>> irreducible_factors((s + 2**70) * (s + 2**70 + 2) * k**2 * -6)
     (-6, [(s + 1180591620717411303424, 1), (s + 1180591620717411303426, 1), (k, 2)])
     """
+    if _is_linear(polynomial):
+        return 1, [(polynomial, 1)]
     try:
         number, factors = polynomial.factor()
     except OverflowError:
@@ -268,6 +270,20 @@ def irreducible_factors(polynomial: fmpz_mpoly) -> tuple[int, list[tuple[fmpz_mp
         number = unit.p
         factors = [(context.from_dict({m: c.p for m, c in part.terms()}), times) for part, times in parts]
     return int(number), [(factor, int(times)) for factor, times in factors]
+
+
+def _is_linear(polynomial: fmpz_mpoly) -> bool:
+    """Tell whether a polynomial is found to be irreducible because it is linear in some generator.
+
+    ``a*x + b`` is, by Gauss's lemma, where a and b have no common factor: here content 1, and a positive
+    leading coefficient, too. That takes a tenth of the time in which a factorisation says so.
+    """
+    linear = [i for i, degree in enumerate(polynomial.degrees()) if int(degree) == 1]
+    if len(polynomial) <= 1 or not linear or int(polynomial.leading_coefficient()) < 0:
+        return False
+    slopes = (polynomial.derivative(i) for i in linear)
+    slope = next((x for x in slopes if len(x) == 1), None) or min(map(polynomial.derivative, linear), key=len)
+    return bool(slope.gcd(polynomial).is_one())
 
 
 def square_free_factors(polynomial: fmpz_mpoly) -> tuple[int, list[tuple[fmpz_mpoly, int]]]:

@@ -1,6 +1,6 @@
 """Expressions as text and as trees: read, printed, built and searched."""
 
-from symflex.expressions.format import format_expression
+from symflex.expressions.format import format_expression, text_length
 from symflex.expressions.limits import PROGRAM_LIMITS, USER_LIMITS
 from symflex.expressions.nodes import (
     Attribute,
@@ -26,6 +26,7 @@ from symflex.expressions.nodes import (
     negative,
     nodes,
     number,
+    once,
     power,
     product_of,
     quotient,

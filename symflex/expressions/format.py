@@ -21,6 +21,7 @@ from symflex.expressions.nodes import (
     Product,
     Quotient,
     Sum,
+    once,
 )
 
 # A decimal is short up to so many significant digits, and can be read back down to this decimal exponent.
@@ -77,6 +78,30 @@ def format_expression(expression: Expression, *, multiply: str = "*", power: str
             parts = ["(", *parts, ")"]
         work.extend(reversed(parts))
     return "".join(pieces)
+
+
+def text_length(expression: Expression) -> int:
+    """Return how many characters :func:`format_expression` prints; the length of a sum is found once.
+
+    >>> x = Name("x")
+    >>> text_length(Product((x, Sum((x, Negative(x))))))
+    9
+    """
+    return _measured(expression, _Position.ALONE)
+
+
+def _measured(node: Expression, place: _Position) -> int:
+    """Return the length of a node's text at a place."""
+    if type(node) is Sum:
+        return _length_of_sum(node) + (2 if place is not _Position.ALONE else 0)
+    parts, bare = _parts(_unsigned(node), place, "*", "^")
+    inner = sum([len(part) if isinstance(part, str) else _measured(*part) for part in parts])
+    return inner if place in bare else inner + 2
+
+
+@once
+def _length_of_sum(node: Sum) -> int:
+    return sum([len(part) if isinstance(part, str) else _measured(*part) for part in _sum_parts(node.terms)])
 
 
 def _parts(

@@ -11,16 +11,43 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from functools import reduce
+from functools import reduce, wraps
 from operator import add, mul, neg, truediv
-from typing import Any, TypeVar
+from typing import Any, TypeVar, dataclass_transform
 
 from symflex.errors import Span
 from symflex.quantities import Quantity
 
+Node = TypeVar("Node")
 
-@dataclass(frozen=True, slots=True)
-class Expression:
+
+class _Remembering:
+    """Where a node keeps what is found of it once; it takes no part in equality, nor in what is pickled."""
+
+    __slots__ = ("_hash", "facts")
+    facts: dict[Callable[[Any], Any], Any]
+    _hash: int
+
+
+@dataclass_transform(frozen_default=True, field_specifiers=(field,))
+def _node(kind: type[Node]) -> type[Node]:
+    """Make a frozen dataclass whose instances find their hash, which their parts take part in, once."""
+    made = dataclass(frozen=True, slots=True)(kind)
+    compute = made.__hash__
+
+    def remembered(self: _Remembering) -> int:
+        try:
+            return self._hash
+        except AttributeError:
+            object.__setattr__(self, "_hash", own := compute(self))
+            return own
+
+    made.__hash__ = remembered  # type: ignore[assignment, method-assign]
+    return made
+
+
+@_node
+class Expression(_Remembering):
     """Base of all nodes; ``span`` is where the node was written, if it was written."""
 
     span: Span | None = field(default=None, kw_only=True, compare=False, repr=False)
@@ -31,28 +58,28 @@ class Expression:
         return ()
 
 
-@dataclass(frozen=True, slots=True)
+@_node
 class Number(Expression):
     """An exact non-negative rational number; a negative one is a ``Negative``."""
 
     value: Fraction
 
 
-@dataclass(frozen=True, slots=True)
+@_node
 class Measured(Number):
     """A length with its unit, as points along x have them: ``0.3 m``; ``value`` is in SI units."""
 
     quantity: Quantity = field(kw_only=True, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@_node
 class Name(Expression):
     """A parameter, node, signal, input, definition, block, ``s`` or ``pi``."""
 
     name: str
 
 
-@dataclass(frozen=True, slots=True)
+@_node
 class Attribute(Expression):
     """A quantity of an element or of a planar node: ``motor.i``, ``tip.theta``."""
 
@@ -60,7 +87,7 @@ class Attribute(Expression):
     name: str
 
 
-@dataclass(frozen=True, slots=True)
+@_node
 class Call(Expression):
     """A function of one argument ``sqrt(x)``, or a field evaluated at a point ``w''(l)`` (order 2).
 
@@ -77,7 +104,7 @@ class Call(Expression):
         return (self.argument,)
 
 
-@dataclass(frozen=True, slots=True)
+@_node
 class Bessel(Call):
     """A Bessel function, as formulas that are derived have them: ``J_0(q)``; none is read."""
 
@@ -91,7 +118,7 @@ class Bessel(Call):
         return f"{letter}_{{{self.index}}}"
 
 
-@dataclass(frozen=True, slots=True)
+@_node
 class Derivative(Expression):
     """A field differentiated along x and not evaluated: ``w''''`` (order 4)."""
 
@@ -99,7 +126,7 @@ class Derivative(Expression):
     order: int
 
 
-@dataclass(frozen=True, slots=True)
+@_node
 class Differentiated(Expression):
     """A bracket differentiated along x, ``(E*I*w'')''``, and perhaps taken at a point, ``(E*I*w'')'(l)``.
 
@@ -116,7 +143,7 @@ class Differentiated(Expression):
         return (self.operand,) if self.point is None else (self.operand, self.point)
 
 
-@dataclass(frozen=True, slots=True)
+@_node
 class Negative(Expression):
     """Minus its operand."""
 
@@ -128,7 +155,7 @@ class Negative(Expression):
         return (self.operand,)
 
 
-@dataclass(frozen=True, slots=True)
+@_node
 class Sum(Expression):
     """A sum of two or more terms; ``a - b`` is ``Sum((a, Negative(b)))``."""
 
@@ -140,7 +167,7 @@ class Sum(Expression):
         return self.terms
 
 
-@dataclass(frozen=True, slots=True)
+@_node
 class Product(Expression):
     """A product of two or more factors."""
 
@@ -152,7 +179,7 @@ class Product(Expression):
         return self.factors
 
 
-@dataclass(frozen=True, slots=True)
+@_node
 class Quotient(Expression):
     """A numerator over a denominator."""
 
@@ -165,7 +192,7 @@ class Quotient(Expression):
         return (self.numerator, self.denominator)
 
 
-@dataclass(frozen=True, slots=True)
+@_node
 class Power(Expression):
     """A base raised to an exponent."""
 
@@ -178,7 +205,7 @@ class Power(Expression):
         return (self.base, self.exponent)
 
 
-@dataclass(frozen=True, slots=True)
+@_node
 class Equation(Expression):
     """``left = right``, as fields write differential equations and conditions."""
 
@@ -295,6 +322,25 @@ def is_number(expression: Expression, value: Fraction | int) -> bool:
 Value = TypeVar("Value")
 
 
+def once(find: Callable[[Any], Value]) -> Callable[[Any], Value]:
+    """Decorate a function of an expression: what it finds of a sum is kept there, as nodes do not change."""
+
+    @wraps(find)
+    def found(expression: Expression) -> Value:
+        if type(expression) is not Sum:
+            return find(expression)
+        try:
+            facts = expression.facts
+        except AttributeError:
+            object.__setattr__(expression, "facts", facts := {})
+        if find not in facts:
+            facts[find] = find(expression)
+        value: Value = facts[find]
+        return value
+
+    return found
+
+
 def names(expression: Expression) -> tuple[Name | Attribute | Call | Derivative, ...]:
     """Return every node of a tree, or an equation, that bears a name; calls before their arguments."""
     return tuple(n for n in nodes(expression) if isinstance(n, Name | Attribute | Call | Derivative))
@@ -337,13 +383,15 @@ def fold(
 
     What is not given is done with Python's operators, sums from zero and products from one. ``name`` takes a
     name, or ``owner.name`` for an attribute; ``power`` the base's value and the exponent, which is left as it
-    is written; ``call`` a call and its argument's value; the others values. An equation has no value.
+    is written; ``call`` a call and its argument's value; the others values. An equation has no value. A sum
+    that is the same object in several places is valued once.
 
     >>> x = Name("x")
     >>> fold(Sum((Power(x, Number(Fraction(2))), Negative(x))), number=Fraction, name={"x": Fraction(3)}.get,
     ...      power=lambda base, exponent: base**exponent.value, call=lambda call, argument: argument)
     Fraction(6, 1)
     """
+    sums: dict[int, Value] = {}
 
     def value(node: Expression) -> Value:
         match node:
@@ -356,8 +404,11 @@ def fold(
             case Negative(operand):
                 return negative(value(operand))
             case Sum(terms):
-                values = [value(t) for t in terms]
-                return total(values) if total is not None else reduce(add, values, number(Fraction(0)))
+                if id(node) not in sums:
+                    values = [value(t) for t in terms]
+                    whole = total(values) if total is not None else reduce(add, values, number(Fraction(0)))
+                    sums[id(node)] = whole
+                return sums[id(node)]
             case Product(factors):
                 values = [value(f) for f in factors]
                 return product(values) if product is not None else reduce(mul, values, number(Fraction(1)))

@@ -87,6 +87,7 @@ DISTRIBUTED_CANDIDATES: dict[str, Begin] = {  # the same for functions with kern
     "vaughan": _later("vaughan", "draft"),
     "krylov": _later("krylov", "draft"),
 }
+UNSHAPED = 2  # how many times as long as the shortest form is before it is shaped another may be, and win
 LONG = 200  # characters of a form from which sums of blocks stay as written, where that is much shorter
 SHORTER = 1.5  # how many times as long a form of one fraction has to be
 READABLE = 10**20  # a whole number beyond which a function without parameters is printed in decimals, as zpk
@@ -176,7 +177,12 @@ def _lumped(tf: TransferFunction, form: str | None, digits: int, arranged: Arran
     """Return a form, definitions closed where that is shorter and no form was asked for."""
 
     def shortest(own: TransferFunction) -> PrintedForm:
-        made = (_made(own, name, digits) for name in ([form] if form else _candidates(own)))
+        if form:
+            return _made(own, form, digits)
+        begun = [FORMS[name](own) for name in _candidates(own)]
+        rough = {made.name: length(made.num, made.den) for made in begun if not is_hiding(made)}
+        most = max(LONG, UNSHAPED * min(rough.values(), default=0))
+        made = (_explained(own, f) for f in begun if rough.get(f.name, 0) <= most)
         return min(made, key=lambda f: (is_hiding(f), _length(f)))
 
     def is_hiding(made: PrintedForm) -> bool:

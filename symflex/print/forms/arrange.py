@@ -25,7 +25,9 @@ from symflex.algebra import (
     square_free_factors,
 )
 from symflex.expressions import (
+    Attribute,
     Call,
+    Derivative,
     Expression,
     Name,
     Negative,
@@ -39,10 +41,12 @@ from symflex.expressions import (
     negative,
     nodes,
     number,
+    once,
     power,
     product_of,
     quotient,
     sum_of,
+    text_length,
 )
 from symflex.model.model import IMAGINARY
 from symflex.print.forms.kept import KeptDefinitions
@@ -87,6 +91,11 @@ class Arranger:
     @cached_property
     def _symbols(self) -> tuple[Expression, ...]:
         return tuple(self.names.get(n, Name(n)) for n in self.ring.names)
+
+    @cached_property
+    def _nested(self) -> dict[tuple[tuple[tuple[int, ...], int], ...], list[Expression]]:
+        """The factors of sums that were arranged."""
+        return {}
 
     @cached_property
     def _s_degree(self) -> tuple[tuple[int, int], ...]:
@@ -221,7 +230,13 @@ class Arranger:
         return product_of([number(scale), front, *self._pieces(rest)])
 
     def _pieces(self, terms: dict[tuple[int, ...], int]) -> list[Expression]:
-        """Return the factors of a sum, each nested."""
+        """Return the factors of a sum, each nested; those of a sum met again are the same objects."""
+        key = tuple(terms.items())
+        if key not in self._nested:
+            self._nested[key] = self._factored(terms)
+        return self._nested[key]
+
+    def _factored(self, terms: dict[tuple[int, ...], int]) -> list[Expression]:
         if _is_trinomial_square(terms) or 3 < len(terms) <= FACTOR_LIMIT:  # noqa: PLR2004
             _, factors = irreducible_factors(self.ring.context.from_dict(terms))
             if len(factors) > 1 or factors[0][1] > 1:
@@ -506,7 +521,7 @@ def _cost(expression: Expression) -> int:
 
 def length(*expressions: Expression) -> int:
     """Return how many characters expressions take."""
-    return sum(len(format_expression(e)) for e in expressions)
+    return sum(map(text_length, expressions))
 
 
 def with_squares(ring: Ring, polynomial: fmpz_mpoly) -> Factored:
@@ -517,12 +532,41 @@ def with_squares(ring: Ring, polynomial: fmpz_mpoly) -> Factored:
 
 def reading(expression: Expression, *, are_quadratics: bool = True) -> float:
     """Return the length of an expression, and more of what is nested in it as ``s*(a*s + b) + c``."""
-    sums = {e for e in nodes(expression) if isinstance(e, Sum) and any(map(_is_nested, e.terms))}
-    if are_quadratics:
-        sums |= {e for e in nodes(expression) if isinstance(e, Sum) and _is_quadratic(e)}
-    return length(expression) + (NESTED - 1) * length(*sums)
+    wide = {e for e in _sums(expression) if _is_nested(e) or (are_quadratics and _is_quadratic(e))}
+    return length(expression) + (NESTED - 1) * length(*wide)
 
 
+def _sums(expression: Expression) -> list[Sum]:
+    return [e for e in nodes(expression) if isinstance(e, Sum)]
+
+
+@once
+def _is_nested(total: Sum) -> bool:
+    """Tell whether a term is a product with one sum with s, which bears another of its factors, too."""
+    for factors in (t.factors for t in total.terms if isinstance(t, Product)):
+        inner = [n for n in (names_in(f) for f in factors if isinstance(f, Sum)) if Name(LAPLACE) in n]
+        if len(inner) == 1 and not inner[0].isdisjoint(factors):
+            return True
+    return False
+
+
+@once
+def names_in(expression: Expression) -> frozenset[Expression]:
+    """Return what :func:`names` does, each once."""
+    found = set[Expression]()
+    pending = [*expression.terms] if isinstance(expression, Sum) else [expression]
+    while pending:
+        node = pending.pop()
+        if isinstance(node, Sum):
+            found |= names_in(node)
+            continue
+        if isinstance(node, Name | Attribute | Call | Derivative):
+            found.add(node)
+        pending.extend(node.children)
+    return frozenset(found)
+
+
+@once
 def _is_quadratic(total: Sum) -> bool:
     """Tell whether a sum has degree 2 in s and is not by its powers, as ``a*(b*s^2 + 1) + c`` is not."""
     if power_of_s(total) != SECOND:
@@ -533,27 +577,36 @@ def _is_quadratic(total: Sum) -> bool:
     return any(len(f) == 1 and power_of_s(f[0]) for f in inner) or len({*degrees}) < len(degrees)
 
 
-def power_of_s(expression: Expression, choose: Callable[[Iterable[int]], int] = max) -> int:
-    """Return the power of s in a product, of a sum's that of the term that is chosen: its degree in s."""
+@once
+def power_of_s(expression: Expression) -> int:
+    """Return the degree in s."""
+    return _power(expression, power_of_s, max)
+
+
+@once
+def lowest_power_of_s(expression: Expression) -> int:
+    """Return the lowest power of s in a product of sums."""
+    return _power(expression, lowest_power_of_s, min)
+
+
+def _power(
+    expression: Expression, power: Callable[[Expression], int], choose: Callable[[Iterable[int]], int]
+) -> int:
+    """Return the power of s in a product, of a sum's that of the term that is chosen."""
     match expression:
+        case Name(name):
+            return int(name == LAPLACE)
         case Sum(terms):
-            return choose(power_of_s(t, choose) for t in terms)
+            return choose(map(power, terms))
         case Product(factors):
-            return sum(power_of_s(f, choose) for f in factors)
+            return sum(map(power, factors))
         case Quotient(above, below):
-            return power_of_s(above, choose) - power_of_s(below, choose)
+            return power(above) - power(below)
         case Negative(operand):
-            return power_of_s(operand, choose)
+            return power(operand)
         case Power(base, Number(exponent)):
-            return power_of_s(base, choose) * int(exponent)
-    return int(expression == Name(LAPLACE))
-
-
-def _is_nested(term: Expression) -> bool:
-    factors = term.factors if isinstance(term, Product) else ()
-    within = [names(f) for f in factors if isinstance(f, Sum)]
-    inner = [n for n in within if Name(LAPLACE) in n]
-    return len(inner) == 1 and bool({*inner[0]} & {*factors})
+            return power(base) * int(exponent)
+    return 0
 
 
 MOST_WAYS = 16  # ways to write factors by the law of a wavenumber that are made

@@ -10,7 +10,7 @@ from symflex.algebra import LAPLACE, Factored, degree_in
 from symflex.equations.elimination import Closure
 from symflex.expressions import Expression, Name, Product, Sum, names, nodes, power, product_of, sum_of
 from symflex.model.linearity import factored_of
-from symflex.print.forms.arrange import Arranger, length, power_of_s, reading
+from symflex.print.forms.arrange import Arranger, length, lowest_power_of_s, reading
 from symflex.print.forms.kept import REWRITE_LIMIT, in_definitions, is_divisor
 from symflex.print.forms.notation import constant_symbols
 from symflex.print.forms.polynomial import in_kernels
@@ -54,7 +54,7 @@ def definitions_form(tf: TransferFunction) -> PrintedForm:
 def shows_origin(ratio: Factored, num: Expression, den: Expression) -> bool:
     """Tell whether zeros and poles at s = 0 are seen as powers of s: not in ``b*(s + a) - a*b``."""
     at_zero = ratio.exponent_of(ratio.ring.generator(LAPLACE))
-    return power_of_s(num, min) - power_of_s(den, min) == at_zero
+    return lowest_power_of_s(num) - lowest_power_of_s(den) == at_zero
 
 
 def tidied_sum(part: Expression, order: Mapping[str, int]) -> Expression:

@@ -198,10 +198,12 @@ class _Signs:
 
     def _as_typed(self, factors: Sequence[Expression]) -> Sequence[Expression]:
         """Return factors in the order in which the model multiplies them: ``m*g*l``, ``2*zeta*omega``."""
+        bases = {base for f in factors if isinstance(base := _base(f), Name)}
         for product in self.typed:
-            own = [f for f in factors if isinstance(_base(f), Name) and _base(f) in product]
-            ordered = iter(sorted(own, key=lambda f: product.index(_base(f))))
-            factors = [next(ordered) if f in own else f for f in factors]
+            if len(bases.intersection(product)) > 1:
+                own = [f for f in factors if _base(f) in bases and _base(f) in product]
+                ordered = iter(sorted(own, key=lambda f: product.index(_base(f))))
+                factors = [next(ordered) if f in own else f for f in factors]
         return factors
 
     def _rejoined(self, product: Expression) -> Expression:
@@ -447,24 +449,27 @@ def _over(total: Sum, call: Call, one: str, ratio: str) -> tuple[int, Expression
 
 def rebuilt(expression: Expression, change: Callable[[Expression], Expression]) -> Expression:
     """Return an expression made anew from its parts, so that numbers are multiplied, each changed."""
+    sums: dict[Expression, Expression] = {}
 
     def again(part: Expression) -> Expression:
-        return rebuilt(part, change)
+        match part:
+            case Sum(terms):
+                if part not in sums:
+                    sums[part] = change(sum_of(map(again, terms)))
+                return sums[part]
+            case Product(factors):
+                return change(product_of(map(again, factors)))
+            case Negative(operand):
+                return negative(again(operand))
+            case Quotient(above, below):
+                return quotient(again(above), again(below))
+            case Power(base, exponent):
+                return power(again(base), exponent)
+            case Call(_, argument):
+                return change(replace(part, argument=again(argument)))
+        return part
 
-    match expression:
-        case Sum(terms):
-            return change(sum_of(map(again, terms)))
-        case Product(factors):
-            return change(product_of(map(again, factors)))
-        case Negative(operand):
-            return negative(again(operand))
-        case Quotient(above, below):
-            return quotient(again(above), again(below))
-        case Power(base, exponent):
-            return power(again(base), exponent)
-        case Call(_, argument):
-            return change(replace(expression, argument=again(argument)))
-    return expression
+    return again(expression)
 
 
 def plain(expression: Expression, put: Mapping[str, Expression]) -> Expression:

@@ -222,3 +222,11 @@ def test_factors_of_any_size_are_taken_apart_in_order_and_square_free_parts_mult
     parts = square_free_factors(whole)
     assert multiplied(*parts) == whole
     assert all(part.gcd(part.derivative("s")).is_constant() for part, _ in parts[1] if part.degrees()[0])
+
+
+def test_a_sum_linear_in_every_letter_is_one_factor_unless_its_slope_shares_one_with_the_rest():
+    assert irreducible_factors(S * K + 2) == (1, [(S * K + 2, 1)])
+    assert irreducible_factors(S * K + S + K + 1) == (1, [(K + 1, 1), (S + 1, 1)])
+    assert irreducible_factors(2 * S * K + 4) == (2, [(S * K + 2, 1)])
+    assert irreducible_factors(-S * K - 2) == (-1, [(S * K + 2, 1)])
+    assert irreducible_factors(S * K + S) == (1, [(K + 1, 1), (S, 1)])

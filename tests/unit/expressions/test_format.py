@@ -24,6 +24,7 @@ from symflex.expressions import (
     format_expression,
     parse,
     parse_equation,
+    text_length,
 )
 from tests.unit.expressions.trees import SHAPE_LIMITS, trees
 from tests.unit.quantities.texts import text_of
@@ -161,3 +162,9 @@ def test_a_tree_deeper_than_the_interpreter_can_call_is_printed():
 def test_a_node_without_a_text_is_refused():
     with pytest.raises(TypeError, match="Expression"):
         format_expression(Expression())
+
+
+@settings(max_examples=50)
+@given(trees)
+def test_a_text_is_as_long_as_its_length_says(tree):
+    assert text_length(tree) == text_length(tree) == len(format_expression(tree))

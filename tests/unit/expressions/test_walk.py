@@ -1,3 +1,4 @@
+import pickle
 import sys
 from fractions import Fraction
 
@@ -14,6 +15,7 @@ from symflex.expressions import (
     Product,
     Quotient,
     Sum,
+    fold,
     format_expression,
     names,
     parse,
@@ -136,3 +138,29 @@ def test_a_node_lists_its_operands():
         (Power(a, b), (a, b)),
     ]:
         assert node.children == children, node
+
+
+def test_a_node_forgets_its_hash_where_it_is_pickled_as_texts_have_others_in_another_process():
+    node = tree("a*(b + c)")
+    assert hash(node) == hash(tree("a*(b + c)"))
+    assert not hasattr(pickle.loads(pickle.dumps(node)), "_hash")
+
+
+def test_a_sum_that_is_in_a_tree_twice_is_valued_once():
+    shared, seen = tree("a + b"), []
+    values = {"a": 2, "b": 3}
+    whole = Product((shared, Power(shared, Number(Fraction(2)))))
+
+    def total(terms):
+        seen.append(terms)
+        return sum(terms)
+
+    value = fold(
+        whole,
+        number=int,
+        name=values.get,
+        power=lambda base, exponent: base ** int(exponent.value),
+        call=None,
+        total=total,
+    )
+    assert (value, seen) == (5**3, [[2, 3]])

@@ -10,7 +10,7 @@ import pytest
 
 from symflex import pipeline
 from symflex.errors import ModelError, SpecError, UncertifiedError
-from symflex.expressions import format_expression, quotient
+from symflex.expressions import Sum, format_expression, nodes, quotient
 from symflex.print.forms import hidden_expressions, print_form, print_forms
 from symflex.print.forms.printed import RATIONAL, PrintedForm
 from symflex.print.json_format import derive_json
@@ -945,3 +945,15 @@ conditions = ["w(0) = 0", "phi(0) = 0", "phi'(l) = 0", "kGA*(w'(l) - phi(l)) = F
 """
     form = print_form(tf_of(text, "Y", "F"))
     assert "sqrt(s)" in format_expression(form.num) + format_expression(form.den)
+
+
+def test_a_ladder_is_printed_of_sums_each_arranged_once():
+    # Every section of a ladder bears those behind it, once for its resistor and once for its capacitor.
+    n = range(1, 7)
+    values = ", ".join(f"R_{i} = {{}}, C_{i} = {{}}" for i in n)
+    parts = [f'r{i} = {{ type = "resistor", between = ["n{i - 1}", "n{i}"], R = "R_{i}" }}' for i in n]
+    parts += [f'c{i} = {{ type = "capacitor", between = ["n{i}", "ground"], C = "C_{i}" }}' for i in n]
+    text = f'symflex = 1\nparameters = {{ {values} }}\ninputs.U = {{ voltage = "n0" }}\noutputs.V = "n6"\n'
+    form = print_form(tf_of("\n".join([text, "[elements]", *parts]), "V", "U"))
+    sums = [part for part in nodes(form.den) if isinstance(part, Sum)]
+    assert len({id(part) for part in sums}) == len({*sums}) < len(sums) / 4
