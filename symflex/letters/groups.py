@@ -15,7 +15,7 @@ groups in place of the others. What is shown is read again and compared with the
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from math import prod
 from typing import Final
@@ -44,7 +44,7 @@ from symflex.model.linearity import factored_of
 from symflex.model.model import ModelParameter
 from symflex.print.forms import print_form
 from symflex.print.forms.naming import Naming
-from symflex.print.forms.printed import S
+from symflex.print.forms.printed import PrintedForm, S
 from symflex.print.forms.shapes import plain, powers_of
 from symflex.print.label import symbol
 from symflex.print.latex.equation import ratio_latex
@@ -84,9 +84,34 @@ def _in_groups(tf: TransferFunction) -> InLetters:
     parameters = {p.name: p for p in tf.parameters if not p.is_imaginary}
     if missing := next((n for n, p in parameters.items() if not p.unit and p.value is None), None):
         raise NotInLettersError(f"nothing says which unit '{missing}' has")
-    known = {S.name, *parameters}
+    groups, scale = _basis(tf, parameters)
+    base = {name: ExactValue(ONE) for name in parameters if name not in groups}
+    model = with_numbers(tf.model, groups, base, in_kernels=True)
+    form = print_form(derive_all(model, [(tf.output.name, tf.input.name)])[0])
+    if form.laws:
+        raise NotInLettersError("its waves have no formula")
+    naming = Naming.of(tf)
+    # A form may take the names of the base, which it does not know.
+    freed = {name: Name(naming.take(name)[0]) for name, _ in form.where if name in base}
+    naming.keep(name for name, _ in form.where)
+    rows, images = _named_groups(tf, naming, groups, parameters)
+    function, lines = _in_names(tf, form, freed | images)
+    size = written_powers({Name(name): scale[name] for name in (*parameters, S.name) if name in scale})
+    head = Row(tf.name, " = scale *", rf"{ratio_latex(tf)} &= G_0 \cdot", function)
+    named = [Row(name, " =", f"{symbol(name, {}).latex} &=", line) for name, line in lines.items()]
+    sized = _row(tf, "scale", size)._replace(left="G_0 &=", unit=tf.unit)
+    found = InLetters(tf, (head, *named, sized, *rows))
+    _check(found)
+    return found
+
+
+def _basis(
+    tf: TransferFunction, parameters: Mapping[str, ModelParameter]
+) -> tuple[dict[str, Exponents], Exponents]:
+    """Return the groups, by the quantity that each divides by powers of a base, and the scale."""
+    named = {S.name, *parameters}
     wanted = {format_expression(x): _exponents(opened(tf, x)) or {} for x in tf.model.analysis.prefer}
-    wanted = {text: row for text, row in wanted.items() if set(row) <= known}  # else of another function
+    wanted = {text: row for text, row in wanted.items() if set(row) <= named}  # else of another function
     divisors = {name for row in wanted.values() for name in list(row)[1:]}
     # The best ones for a base come last.
     ordered = sorted(parameters.values(), key=lambda p: (p.name in divisors, _choice(tf, p)))
@@ -95,22 +120,25 @@ def _in_groups(tf: TransferFunction) -> InLetters:
     echelon = _echelon(invariant, [*others, S.name, *(p.name for p in ordered)])
     for pivot, row in echelon.items():
         scale = times((scale, ONE), (row, -scale.get(pivot, Fraction(0))))
-    own = {name: echelon[name] for name in (S.name, *parameters) if name in echelon}
+    groups = {name: echelon[name] for name in (S.name, *parameters) if name in echelon}
     for text, row in wanted.items():
         main = next(iter(row), "")
-        if main not in own or times((row, ONE), (own[main], -row[main])):
+        if main not in groups or times((row, ONE), (groups[main], -row[main])):
             raise NotInLettersError(f"'{text}' in prefer of [analysis] is not a group, or not beside others")
-    base = {name: ExactValue(ONE) for name in parameters if name not in own}
-    model = with_numbers(tf.model, own, base, in_kernels=True)
-    form = print_form(derive_all(model, [(tf.output.name, tf.input.name)])[0])
-    if form.laws:
-        raise NotInLettersError("its waves have no formula")
-    naming, rows, images = Naming.of(tf), list[Row](), dict[str, Expression]()
+    return groups, scale
+
+
+def _named_groups(
+    tf: TransferFunction,
+    naming: Naming,
+    groups: Mapping[str, Exponents],
+    parameters: Mapping[str, ModelParameter],
+) -> tuple[list[Row], dict[str, Expression]]:
+    """Return a row for each group, with its usual name, and what quantities are in these names."""
+    rows: list[Row] = []
+    images: dict[str, Expression] = {} if S.name in groups else {S.name: e.number(1)}
     units = {p.name: unit_of(p.unit or "1").dimension for p in tf.parameters} | {S.name: Dimension(s=-ONE)}
-    # A form may take the names of the base, which it does not know.
-    images |= {name: Name(naming.take(name)[0]) for name, _ in form.where if name in base}
-    naming.keep(name for name, _ in form.where)
-    for main, row in own.items():
+    for main, row in groups.items():
         unit = str(units[main]) if main != S.name else ""
         name, words = ("S", "") if main == S.name else NAMES.get(unit, ("Pi", ""))
         is_ratio = unit in DAMPERS and {abs(n) for k, n in row.items() if k != main} == {ONE / 2}
@@ -118,11 +146,18 @@ def _in_groups(tf: TransferFunction) -> InLetters:
         halves: dict[Expression, Fraction] = {e.number(2): ONE} if is_ratio else {}
         powers: dict[Expression, Fraction] = {Name(k): row[k] for k in (main, *parameters) if k in row}
         group = written_powers(times((powers, ONE), (halves, -ONE)))
-        if (left := prod((units[n] ** x for n, x in row.items()), start=Dimension())) != Dimension():
-            raise NotInLettersError(f"{format_expression(group)} would be one, and is in {left}")
+        remainder = prod((units[n] ** x for n, x in row.items()), start=Dimension())
+        if remainder != Dimension():
+            raise NotInLettersError(f"{format_expression(group)} would be one, and is in {remainder}")
         images[main] = written_powers(halves | {Name(name): ONE})
         rows.append(_row(tf, name, group, words))
-    images |= {} if S.name in own else {S.name: e.number(1)}
+    return rows, images
+
+
+def _in_names(
+    tf: TransferFunction, form: PrintedForm, images: Mapping[str, Expression]
+) -> tuple[Expression, dict[str, Expression]]:
+    """Return a form and its lines with groups in place of quantities."""
     one, meant = e.number(1), dict(definitions_of(tf))
     lines = {n: e.replace_node(plain(line, {}), e.Call("sqrt", one), one) for n, line in form.where}
     # The model's own names mean something else in groups; what is only another name is left out as well.
@@ -130,14 +165,7 @@ def _in_groups(tf: TransferFunction) -> InLetters:
     function = e.quotient(form.num, form.den)
     for put in (*[inside] * len(inside), images):
         function, lines = plain(function, put), {name: plain(line, put) for name, line in lines.items()}
-    lines = {format_expression(images.get(name, Name(name))): line for name, line in lines.items()}
-    size = written_powers({Name(name): scale[name] for name in (*parameters, S.name) if name in scale})
-    head = Row(tf.name, " = scale *", rf"{ratio_latex(tf)} &= G_0 \cdot", function)
-    named = [Row(name, " =", f"{symbol(name, {}).latex} &=", line) for name, line in lines.items()]
-    sized = _row(tf, "scale", size)._replace(left="G_0 &=", unit=tf.unit)
-    found = InLetters(tf, (head, *named, sized, *rows))
-    _check(found)
-    return found
+    return function, {format_expression(images.get(name, Name(name))): line for name, line in lines.items()}
 
 
 def _row(tf: TransferFunction, name: str, expression: Expression, words: str = "") -> Row:

@@ -52,7 +52,6 @@ Share = tuple[arb, int]
 Box = Mapping[str, tuple[Fraction, Fraction]]
 Image = tuple[fmpz_mpoly, Factored, int]  # a factor, the shorter one in its place, and its exponent
 Maps = tuple[PoleZeroMap, PoleZeroMap]
-Way = tuple[TransferFunction, PrintedForm | None, Sequence[Image], tuple[float, float]]
 """A short function, its print, and the changes of a coefficient at the values and over the box."""
 
 MOST_NESTED = 4_000  # terms up to which every term of a print is compared over a box: in ten seconds
@@ -197,6 +196,15 @@ class _Pruned:
         return tuple(0 if i in self.inner else n for i, n in enumerate(term[0]))
 
 
+def _sums_of(tf: TransferFunction, letters: _Letters) -> list[_Pruned]:
+    """Return the factors that may lose terms."""
+    # What kernels of other waves divide by vanishes with them only as a whole.
+    is_plain = all(law.kind in ("exponential", "wave", "bending") for law in tf.kernels.dispersions)
+    opaque = frozenset() if is_plain else frozenset(tf.kernels.generators)
+    factors = [(f, n) for f, n in tf.ratio.factors if len(f) > 1]
+    return [_Pruned(f, n, letters) for f, n in factors if not tf.ratio.ring.used_in([f]) & opaque]
+
+
 def _without(each: _Pruned, gone: Mapping[Key, Sequence[tuple[Share, Term]]]) -> fmpz_mpoly:
     context = each.polynomial.context()
     return each.polynomial - context.from_dict(dict(term for own in gone.values() for _, term in own))
@@ -241,23 +249,45 @@ def _shorter(
     return short, (max(x for x, _ in changes), max(x for _, x in changes)), dropped, images
 
 
+@dataclass(frozen=True, slots=True)
+class _Candidate:
+    """A function that may be shown in place of the exact one."""
+
+    tf: TransferFunction
+    images: Sequence[Image]  # what its factors were, and are
+    changes: tuple[float, float]  # of its coefficients, at the values and over the spread
+    printed: PrintedForm | None = None
+    kept: int = 0  # parts that stay whole
+    roots: PoleZeroMap | None = None
+
+    @property
+    def print(self) -> PrintedForm:
+        """How it prints."""
+        assert self.printed is not None
+        return self.printed
+
+    def size(self) -> float:
+        """Return how long it prints."""
+        return length(self.print.num, self.print.den, *dict(self.print.where).values())
+
+
 def _by_coefficients(
     tf: TransferFunction, sums: Sequence[_Pruned], letters: _Letters, most: float
-) -> Iterator[Way]:
+) -> Iterator[_Candidate]:
     """Yield functions without monomials, one more coefficient kept whole each time."""
     while True:
         with precision(BITS):
             short, changes, dropped, images = _shorter(tf, sums, letters, most)
         if not dropped:
             return
-        yield short, None, images, changes
+        yield _Candidate(short, images, changes)
         _, owner, key = max(dropped, key=lambda each: each[0])
         owner.whole.add(key)
 
 
 def _by_print(
     tf: TransferFunction, form: PrintedForm, letters: _Letters, most: float, has_box: bool
-) -> Iterator[Way]:
+) -> Iterator[_Candidate]:
     """Yield prints without terms of sums, also those in lines below, one more term kept each time."""
     values = {n: letters.values[i] for n, i in tf.ratio.ring.index.items() if i in letters.values}
     nested = NestedForm(form, tf.ratio.ring, values)
@@ -285,15 +315,16 @@ def _by_print(
         printed = shaped(tf.model, nested.shown(parts))
         read_back(short, printed)
         with precision(BITS):
-            yield short, printed, images(parts) if has_box else (), (change, max(change, over_box(parts)))
+            changes = (change, max(change, over_box(parts)))
+            yield _Candidate(short, images(parts) if has_box else (), changes, printed)
 
 
-def _apart(tf: TransferFunction, way: Way, letters: _Letters, roots: Maps) -> Approximation:
+def _apart(tf: TransferFunction, short: _Candidate, letters: _Letters, roots: Maps) -> Approximation:
     """Return how far a short function is from the other, also over a box."""
-    (short, _, images, _), own, box = way, bind(tf), letters.box
-    band = band_of(own, roots[0])
+    exact, after, images, box = bind(tf), bind(short.tf), short.images, letters.box
+    band = band_of(exact, roots[0])
     if not box or tf.model.root is not None:
-        return distance(own, bind(short), roots, over_box=(inf, inf) if box else (None, None))
+        return distance(exact, after, roots, over_box=(inf, inf) if box else (None, None))
     fixed = tuple((name, partial(arb, ball(low).union(ball(high)))) for name, (low, high) in box.items())
     others = tuple((p.name, p.value) for p in tf.model.parameters if p.value and p.name not in box)
     kernels = BoundTransferFunction(tf, others, tf.ratio, (), tf.kernels, fixed=fixed).kernel_values()
@@ -307,7 +338,7 @@ def _apart(tf: TransferFunction, way: Way, letters: _Letters, roots: Maps) -> Ap
         moves = [(n, letters.displacement(x, y.expand(), band[1])) for x, y, n in images]
         bands, where = alike(quotient, band, COARSE)
     most = [max((x for n, x in moves if n * sign > 0), default=0.0) for sign in (-1, 1)]
-    apart, facts = distance(own, bind(short), roots, over_box=most), {"within_1_db_over_spread_hz": bands}
+    apart, facts = distance(exact, after, roots, over_box=most), {"within_1_db_over_spread_hz": bands}
     return Approximation((*apart.said, f"magnitude over the spread {where}"), apart.facts | facts)
 
 
@@ -337,59 +368,70 @@ def shortened(
     values_for(tf.model, tf.parameters, {})
     has_box = share is not None or any(p.spread is not None for p in tf.parameters)
     box = spread_box(tf.parameters, share) if has_box else {}
-    own = bind(tf)
-    first, _ = roots_of(own, own)
-    end = band_of(own, first)[1]
-    # What kernels of other waves divide by vanishes with them only as a whole.
-    is_plain = all(law.kind in ("exponential", "wave", "bending") for law in tf.kernels.dispersions)
-    opaque = frozenset() if is_plain else frozenset(tf.kernels.generators)
+    bound = bind(tf)
+    first, _ = roots_of(bound, bound)
+    end = band_of(bound, first)[1]
     with precision(BITS):
         letters = _Letters.of(tf, box)
-        factors = [(f, n) for f, n in tf.ratio.factors if len(f) > 1]
-        sums = [_Pruned(f, n, letters) for f, n in factors if not tf.ratio.ring.used_in([f]) & opaque]
-    exact, tried = print_form(tf, form), list[tuple[int, TransferFunction, PrintedForm, Way, PoleZeroMap]]()
-    whole: Way = tf, exact, (), (0.0, 0.0)
+        sums = _sums_of(tf, letters)
+    exact = _Candidate(tf, (), (0.0, 0.0), print_form(tf, form), roots=first)
     ways = [_by_coefficients(tf, sums, letters, float(most))]
-    ways += [_by_print(tf, exact, letters, float(most), bool(box))] if form is None else []
+    ways += [_by_print(tf, exact.print, letters, float(most), bool(box))] if form is None else []
     at_rest = _at_rest(tf)
-    for each in ways:
+
+    def holds(found: _Candidate) -> _Candidate | None:
+        """Return a candidate with its roots, None if one crossed the axis or cancelled."""
+        if _at_rest(found.tf) != at_rest:
+            return None
+        after = bind(found.tf)
+        roots = roots_of(bound, after, first)[1]
+        if after.symbolic is not None or _counts(first, end) != _counts(roots, end):
+            return None
+        return replace(found, roots=roots, printed=found.printed or print_form(found.tf, form))
+
+    tried = []
+    for way in ways:
         kept = -1
-        for kept, way in enumerate(each):
-            if _at_rest(way[0]) != at_rest:
-                continue
-            after = bind(way[0])
-            roots = roots_of(own, after, first)[1]
-            if after.symbolic is None and _counts(first, end) == _counts(roots, end):
-                tried.append((kept, way[0], way[1] or print_form(way[0], form), way, roots))
+        for kept, found in enumerate(way):
+            if (held := holds(found)) is not None:
+                tried.append(replace(held, kept=kept))
                 break
         else:
-            tried.append((kept + 1, tf, exact, whole, first))
-    tried.append((0, tf, exact, whole, first))
-    kept, short, printed, way, roots = min(
-        tried, key=lambda each: length(each[2].num, each[2].den, *dict(each[2].where).values())
-    )
-    changes = way[3]
-    terms, fewest = (terms_of(short.ratio), terms_of(tf.ratio)), min(terms_of(x.ratio) for _, x, *_ in tried)
-    over = f", over the spread by {percent(changes[1])}" if box else ""
+            tried.append(replace(exact, kept=kept + 1))
+    best = min((*tried, exact), key=_Candidate.size)
+    fewest = min(terms_of(each.tf.ratio) for each in (*tried, exact))
+    described = _described(tf, best, float(most), fewest, has_box=bool(box))
+    if best.tf is not tf and best.roots is not None:
+        apart = _apart(tf, best, letters, (first, best.roots))
+        described = replace(described, said=described.said + apart.said, facts=described.facts | apart.facts)
+    return best.tf, replace(best.print, approximation=described)
+
+
+def _described(
+    tf: TransferFunction, best: _Candidate, most: float, fewest: int, *, has_box: bool
+) -> Approximation:
+    """Say how many terms went, and what that changed."""
+    terms, changes, is_exact = (terms_of(best.tf.ratio), terms_of(tf.ratio)), best.changes, best.tf is tf
+    over = f", over the spread by {percent(changes[1])}" if has_box else ""
     said = [f"{terms[0]} of {terms[1]} terms; coefficients change by at most {percent(changes[0])}{over}"]
-    if short is tf:
-        stay = f"no term can be dropped within {100 * float(most):g} %: all {terms[1]} stay"
+    if is_exact:
+        stay = f"no term can be dropped within {100 * most:g} %: all {terms[1]} stay"
         longer = f"all {terms[1]} terms stay: with {fewest} the formula would be longer"
         said = [longer if fewest < terms[1] else stay if terms[1] > 1 else stay.partition(":")[0]]
-    static, after = None, bind(short)
-    if own.is_rational:
+    static, before, after = None, bind(tf), bind(best.tf)
+    if before.is_rational:
         with precision(BITS):
-            unit = acb(ball(after.ratio.unit / own.ratio.unit))
-            static = upper(abs(unit * _first(after) / _first(own) - 1))
-    said += [f"value for s -> 0: changed by {percent(static)}"] if static and static > TINY else []
-    part = f"{counted(kept, 'part')} kept whole, as a root would cross the imaginary axis or cancel"
-    said += [part] if kept else []
-    coefficients = {"nominal": changes[0], "spread": changes[1] if box else None}
-    facts = {"kind": "short", "bound": float(most), "terms": [*terms], "coefficients": coefficients}
-    apart = Approximation((), {}) if short is tf else _apart(tf, way, letters, (first, roots))
-    facts |= {"static": static, "kept_whole": kept} | apart.facts
-    said += apart.said
-    return short, replace(printed, approximation=Approximation(tuple(said), facts, short is tf))
+            unit = acb(ball(after.ratio.unit / before.ratio.unit))
+            static = upper(abs(unit * _first(after) / _first(before) - 1))
+    if static and static > TINY:
+        said.append(f"value for s -> 0: changed by {percent(static)}")
+    if best.kept:
+        part = counted(best.kept, "part")
+        said.append(f"{part} kept whole, as a root would cross the imaginary axis or cancel")
+    coefficients = {"nominal": changes[0], "spread": changes[1] if has_box else None}
+    facts = {"kind": "short", "bound": most, "terms": [*terms], "coefficients": coefficients}
+    facts |= {"static": static, "kept_whole": best.kept}
+    return Approximation(tuple(said), facts, is_exact)
 
 
 def _first(bound: BoundTransferFunction) -> acb:
