@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from itertools import count
+from itertools import count, product
 from math import lcm
 from typing import TYPE_CHECKING
 
@@ -45,7 +45,7 @@ from symflex.model.linearity import rational_exponent
 from symflex.model.model import PlacedBlock, rewritten
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection
+    from collections.abc import Callable, Collection, Iterable
 
     from symflex.model.network import Draft
 
@@ -63,13 +63,10 @@ def with_branches(draft: Draft, taken: Collection[str]) -> Draft:
     written = [n for e in places for n in nodes(e)]
     if not any(n.name == "sqrt" if isinstance(n, Call) else isinstance(n, Power) for n in written):
         return draft
-    known, moving = dict[str, Expression](), dict[str, Expression]()
-    for definition in draft.definitions:
-        opened = known[definition.name] = substitute(definition.expression, known)
-        if len(nodes(opened)) > SIZE_LIMIT:
-            return draft
-        if names_among(opened, (LAPLACE,)):
-            moving[definition.name] = opened
+    known = opened_definitions(draft)
+    if known is None:
+        return draft
+    moving = {name: opened for name, opened in known.items() if names_among(opened, (LAPLACE,))}
     roots = {n: found for e in places for n in nodes(substitute(e, moving)) if (found := _radical(n))}
     order = lcm(*(exponent.denominator for exponent, _, _ in roots.values()))
     # Without a shift, roots of constants are factors, of which only square roots have a name.
@@ -102,6 +99,16 @@ def with_branches(draft: Draft, taken: Collection[str]) -> Draft:
     return replace(changed, blocks=(root, *decays.values(), *changed.blocks))
 
 
+def opened_definitions(draft: Draft) -> dict[str, Expression] | None:
+    """Return definitions with all others put into them; None where one grows too large."""
+    known = dict[str, Expression]()
+    for definition in draft.definitions:
+        opened = known[definition.name] = substitute(definition.expression, known)
+        if len(nodes(opened)) > SIZE_LIMIT:
+            return None
+    return known
+
+
 def _radical(node: Expression) -> Radical | None:
     match node:
         case Call("sqrt", argument, 0):
@@ -116,12 +123,10 @@ def _radical(node: Expression) -> Radical | None:
     match argument:
         case Quotient(above, divisor) if not names_among(above, (LAPLACE,)):
             argument, below, exponent = divisor, above, -exponent
-    terms = argument.terms if isinstance(argument, Sum) else (argument,)
-    rest = [t for t in terms if not names_among(t, (LAPLACE,))]
-    slope = per(sum_of([t for t in terms if t not in rest]), LAPLACE)
-    if slope is None or slope[1] != 1:
+    powers = powers_of(argument, LAPLACE)
+    if powers is None or max(powers) != 1:
         return None
-    return exponent, quotient(slope[0], below), quotient(sum_of(rest), below)
+    return exponent, quotient(powers[1], below), quotient(powers.get(0, number(0)), below)
 
 
 def _factor(radical: Radical, base: Expression) -> Expression | None:
@@ -135,47 +140,62 @@ def _factor(radical: Radical, base: Expression) -> Expression | None:
     return power(quotient(above, below), int(2 * exponent)) if exponent.denominator == HALF else None
 
 
-def per(expression: Expression, name: str) -> tuple[Expression, int] | None:
-    """Return a and m of ``a*name^m``, a free of it; None of all else."""
+def powers_of(expression: Expression, name: str) -> dict[int, Expression] | None:
+    """Return the coefficients of a polynomial in a name, by their powers; None of all else."""
+    if not names_among(expression, (name,)):
+        return {0: expression}
     match expression:
-        case Name(own) if own == name:
-            return number(1), 1
-        case Power(Name(own), Number(m)) if own == name:
-            return number(1), int(m)
+        case Name():
+            return {1: number(1)}
+        case Power(Name(), Number(m)) if m.denominator == 1:
+            return {int(m): number(1)}
         case Negative(operand):
-            inner = per(operand, name)
-            return inner and (negative(inner[0]), inner[1])
-        case Product(factors):
-            moving = [f for f in factors if names_among(f, (name,))]
-            inner = per(moving[0], name) if len(moving) == 1 else None
-            return inner and (product_of([inner[0] if f is moving[0] else f for f in factors]), inner[1])
+            inner = powers_of(operand, name)
+            return inner and {m: negative(a) for m, a in inner.items()}
         case Quotient(above, below) if not names_among(below, (name,)):
-            inner = per(above, name)
-            return inner and (quotient(inner[0], below), inner[1])
-        case Sum(terms):
-            found = [each for term in terms if (each := per(term, name))]
-            if len(found) == len(terms) and len({m for _, m in found}) == 1:
-                return sum_of([a for a, _ in found]), found[0][1]
+            inner = powers_of(above, name)
+            return inner and {m: quotient(a, below) for m, a in inner.items()}
+        case Product(parts) | Sum(parts):
+            found = [each for part in parts if (each := powers_of(part, name))]
+            if len(found) < len(parts):
+                return None
+            if isinstance(expression, Sum):
+                return _gathered((m, a) for each in found for m, a in each.items())
+            total = {0: number(1)}
+            for each in found:
+                if max(total) + max(each) > MOST_SHEETS:
+                    return None  # their coefficients double with every factor
+                pairs = product(total.items(), each.items())
+                total = _gathered((m + n, product_of([a, b])) for (m, a), (n, b) in pairs)
+            return total
     return None
+
+
+def _gathered(terms: Iterable[tuple[int, Expression]]) -> dict[int, Expression]:
+    by_power: dict[int, list[Expression]] = {}
+    for power_, coefficient in terms:
+        by_power.setdefault(power_, []).append(coefficient)
+    return {m: sum_of(own) for m, own in by_power.items()}
 
 
 def _function(node: Expression, root: str, decay: Decay) -> Expression | None:
     """Return exp, sinh, cosh or tanh of a multiple of a power of the root by decays; None of all else."""
     if not isinstance(node, Call) or node.order or not names_among(node.argument, (root,)):
         return None
-    terms = node.argument.terms if isinstance(node.argument, Sum) and node.name == "exp" else (node.argument,)
-    rest = [t for t in terms if not names_among(t, (root,))]
-    found = per(sum_of([t for t in terms if t not in rest]), root)
-    if found is None or found[1] < 1:
+    powers = powers_of(node.argument, root)
+    if powers is None or any(m and names_among(a, (LAPLACE,)) for m, a in powers.items()):
         return None
-    rate, turned = found[0], negative(found[0])
-    is_negative = len(format_expression(turned)) < len(format_expression(rate))
-    e = decay(turned if is_negative else rate, found[1])
-    one, two, square = number(1), number(2), power(e, 2)
+    one, two = number(1), number(2)
+    decays = [(_is_negative(a), m, a) for m, a in powers.items() if m]
+    each = [(turned, decay(negative(a) if turned else a, m)) for turned, m, a in decays]
+    if node.name == "exp":
+        rest = [Call("exp", powers[0])] if 0 in powers else []
+        return product_of([*(e if turned else quotient(one, e) for turned, e in each), *rest])
+    if len(powers) > 1:
+        return None
+    ((is_negative, e),) = each
+    square = power(e, 2)
     match node.name:
-        case "exp":
-            value = e if is_negative else quotient(one, e)
-            return product_of([value, Call("exp", sum_of(rest))]) if rest else value
         case "cosh":
             return quotient(sum_of([one, square]), product_of([two, e]))
         case "sinh" | "tanh":
@@ -183,3 +203,8 @@ def _function(node: Expression, root: str, decay: Decay) -> Expression | None:
             value = quotient(sum_of([one, negative(square)]), below)
             return negative(value) if is_negative else value
     return None
+
+
+def _is_negative(rate: Expression) -> bool:
+    """Tell whether a rate is shorter to write with the other sign."""
+    return len(format_expression(negative(rate))) < len(format_expression(rate))

@@ -2,14 +2,16 @@
 
 Input: a draft, as read. Output: the same, with a name of a block wherever the exponential stood.
 
-Example: in ``u = "K*exp(-s*T)*(r - x)"`` the exponential is the block ``{ type = "delay", T = "T" }``.
+Example: in ``u = "K*exp(-s*T)*(r - x)"`` the exponential is the block ``{ type = "delay", T = "T" }``. What
+else stands in the exponent is a factor: ``exp(-(s + a)*T)`` is ``exp(-a*T)`` times that block.
 A definition that holds one, ``C = "K*exp(-s*T)"``, and such a tf block are written out where they are used.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import replace
+from fractions import Fraction
 from itertools import count
 from typing import TYPE_CHECKING
 
@@ -18,23 +20,28 @@ from symflex.expressions import (
     Call,
     Expression,
     Name,
+    Number,
+    Product,
     Quotient,
     is_number,
     names,
     names_among,
     negative,
     nodes,
+    number,
+    product_of,
     replace_values,
     substitute,
 )
 from symflex.library.blocks import BLOCKS
-from symflex.model.branches import per
+from symflex.model.branches import opened_definitions, powers_of
 from symflex.model.model import PlacedBlock, rewritten
 from symflex.model.scope import COORDINATE
 
 if TYPE_CHECKING:
     from symflex.model.network import Draft
 
+ONE = Number(Fraction(1))
 SIZE_LIMIT = 200  # nodes of what is written out: definitions of definitions would double at every level
 
 
@@ -49,17 +56,24 @@ def with_written_delays(draft: Draft, taken: Collection[str]) -> Draft:
     places += ratios.values()
     # What depends on x is no delay, unless x is a parameter.
     along = {COORDINATE} - {p.name for p in draft.declared} - {p.name for p in draft.inherited}
-    times = {n: t for e in places for n in nodes(e) if (t := _written_delay(n)) and not names_among(t, along)}
-    if not times:
+    exponentials = [n for e in places for n in nodes(e) if isinstance(n, Call) and n.name == "exp"]
+    opened = opened_definitions(draft) if exponentials else None
+    moving = {name: e for name, e in (opened or {}).items() if names_among(e, (LAPLACE,))}
+    late_nodes = {n: own for n in exponentials if (own := _written_delay(n, moving))}
+    late_nodes = {n: own for n, own in late_nodes.items() if not names_among(own[0], along)}
+    if not late_nodes:
         return draft
     used = {n.name for e in places for n in names(e)}
     free = (name for i in count(1) if (name := f"delay_{i}") not in taken and name not in used)
-    spans = {time: node.span for node, time in times.items()}
+    spans = {time: node.span for node, (time, _) in late_nodes.items()}
     blocks = {
         time: PlacedBlock(next(free), BLOCKS["delay"], (("T", replace(time, span=span)),), span=span)
         for time, span in spans.items()
     }
-    mapping = {node: Name(blocks[time].name, span=node.span) for node, time in times.items()}
+    mapping: dict[Expression, Expression] = {
+        node: product_of([gain, Name(blocks[time].name, span=node.span)])
+        for node, (time, gain) in late_nodes.items()
+    }
     late: dict[str, Expression] = {}
     bodies = {d.name: d.expression for d in draft.definitions} | ratios
     grown = True
@@ -85,9 +99,17 @@ def with_written_delays(draft: Draft, taken: Collection[str]) -> Draft:
     return replace(kept, blocks=(*kept.blocks, *blocks.values()))
 
 
-def _written_delay(node: Expression) -> Expression | None:
-    """Return T of ``exp(-s*T)``; None of all else."""
-    if not isinstance(node, Call) or node.name != "exp" or node.order:
+def _written_delay(node: Call, moving: Mapping[str, Expression]) -> tuple[Expression, Expression] | None:
+    """Return T and a constant C of ``exp(-s*T)*C``, as of ``exp(a - s*T)``; None of all else."""
+    if node.order:
         return None
-    found = per(negative(node.argument), LAPLACE)
-    return None if found is None or found[1] != 1 or is_number(found[0], 0) else found[0]
+    argument = substitute(node.argument, moving)
+    powers = powers_of(negative(argument), LAPLACE)
+    if powers is None or max(powers) != 1 or is_number(powers[1], 0):
+        return None
+    rest = negative(powers.get(0, number(0)))
+    if is_number(rest, 0):
+        return powers[1], number(1)
+    if ONE in nodes(argument) and not any(isinstance(n, Number) for n in nodes(rest)):
+        rest = Product((ONE, rest))  # in (s - 1)*T the 1 is one per second
+    return powers[1], Call("exp", rest)

@@ -242,14 +242,28 @@ def _by_wave_echoes(asked: Asked) -> Plan | Refused:
     return partial(_closely, asked, partial(waves.echoed, asked.integrations))
 
 
+def _by_hyperbolas(asked: Asked) -> Plan | Refused:
+    if asked.bound.sheets == 1:
+        return Refused()
+    later = _by_delays(asked)
+    return partial(along_hyperbolas, asked) if isinstance(later, Refused) else later
+
+
 def _by_delays(asked: Asked) -> Plan | Refused:
     if not asked.has_delays or asked.quotient is not None:
         return Refused()
-    laws = [law for law in asked.bound.kernels.dispersions if law.kind == "exponential"]
-    if any(polynomial_in_s(law.shift, 1) is None for law in laws):
+    kernels = [k for k in asked.bound.kernels.kernels if k.dispersion.kind == "exponential"]
+    delays = [k for k in kernels if _is_delay(k, asked.bound.sheets)]
+    if asked.bound.sheets == 1 and len(delays) < len(kernels):
         return Refused("what is delayed changes its form")
-    parts = _taken_apart(asked.bound)
-    return partial(_later, asked, parts) if any(delay for delay, _ in parts) else Refused()
+    parts = _taken_apart(asked.bound, delays)
+    return partial(_later, asked, parts) if any(own for own, _ in parts) else Refused()
+
+
+def _is_delay(kernel: Kernel, sheets: int) -> bool:
+    """Tell whether a kernel is ``exp(-s T - a)``, with s as a power of its root."""
+    powers = polynomial_in_s(kernel.dispersion.shift, sheets)
+    return powers is not None and all(p.is_zero for p in powers[1:-1])
 
 
 def _by_modes(
@@ -268,7 +282,7 @@ def _by_estimate(asked: Asked) -> Plan | Refused:
 
 
 WAYS = (
-    Way("hyperbolas", lambda a: Refused() if a.bound.sheets == 1 else partial(along_hyperbolas, a)),
+    Way("hyperbolas", _by_hyperbolas),
     Way("partial fractions", lambda a: partial(_of_lumped, a) if a.bound.is_rational else Refused()),
     Way("echoes", _by_echoes),
     Way("settled echoes", _by_settling),
@@ -304,10 +318,12 @@ def _closely(
     return Refused(reason)
 
 
-def _taken_apart(bound: BoundTransferFunction) -> list[tuple[Delays, BoundTransferFunction]]:
+def _taken_apart(
+    bound: BoundTransferFunction, late: Sequence[Kernel]
+) -> list[tuple[Delays, BoundTransferFunction]]:
     """Return a function as parts after delays, as of late sensors: ``(1 + exp(-s T)) w(l)/F``."""
     ring, table = bound.ratio.ring, bound.kernels
-    delays = {ring.index[k.generator]: k for k in table.kernels if k.dispersion.kind == "exponential"}
+    delays = {ring.index[k.generator]: k for k in late}
     if any(bound.den.exponent_of(ring.generator(k.generator)) > 0 for k in delays.values()):
         raise too_early()
     plain, mixed = Factored(ring, bound.num.unit), ring.constant(1)
@@ -342,14 +358,16 @@ def _later(asked: Asked, parts: list[tuple[Delays, BoundTransferFunction]]) -> S
     with precision(bits):
         total = Gathered(asked.times.enclosed())
         constants = {name: acb(c) for name, c in evaluator.constants.items()}
-        waits, gains = [], []
+        waits, gains, root = [], [], asked.bound.root
+        slope, begin = (arb(1), arb(0)) if root is None else (root.slope, root.shift)
         for delays, _ in parts:
             wait, gain = arb(0), arb(1)
             for kernel, exponent in delays:
                 shift = kernel.dispersion.shift * kernel.length
                 low, high = (at_centre(evaluator.value(shift, {"s": acb(x), **constants})) for x in (0, 1))
-                wait += exponent * (high - low).real
-                gain *= (-exponent * low).exp().real
+                rate = high - low  # of s, or of the power of its root that s stands in
+                wait += exponent * (rate * slope).real
+                gain *= (-exponent * (low + rate * begin)).exp().real
             waits.append(wait)
             gains.append(gain)
     reason: str | None = None

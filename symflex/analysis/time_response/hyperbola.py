@@ -43,7 +43,9 @@ def along_hyperbolas(asked: Asked) -> Sampled:
         values: list[arb] = []
         while len(values) < len(asked.times):
             values = [*_last_before(asked, len(asked.times) - len(values), factor * digits, far), *values]
-        if is_precise(values, digits):
+        with precision(bits_for_digits(factor * digits)):
+            begun = next((i for i, t in enumerate(asked.times.enclosed()) if t > 0), len(values))
+        if is_precise(values[begun:], digits):
             break
         asked = asked if asked.times.is_exact else replace(asked, times=asked.times.one_by_one())
     return Sampled(tuple(values), method="hyperbolas")
@@ -58,10 +60,15 @@ def _last_before(asked: Asked, end: int, digits: int, far: FunctionFarOut) -> li
     """Return the values at the last times before number ``end`` that one path serves."""
     bound, times, root = asked.bound, asked.times, asked.bound.root
     assert root is not None
-    last, nearest = float(times.seconds[end - 1]), (1 - sin(MIDDLE + ASIDE)) * (1 - 1e-9)
-    start = next(i for i in range(end) if times.seconds[i] * BAND >= last)
+    with precision(bits_for_digits(digits)):
+        every = times.enclosed()
+        seconds = [float(t.upper()) for t in every[:end]]
+        is_start = not every[end - 1] > 0  # of what comes after a delay, maybe a ball about 0
+    last, nearest = seconds[-1], (1 - sin(MIDDLE + ASIDE)) * (1 - 1e-9)
+    start = end - 1 if is_start else next(i for i in range(end) if every[i] > 0 and seconds[i] * BAND >= last)
     # The path from the branch point, in z.
-    distance = max(TURNS[0] / (last or 1.0) * nearest, 2 * float(root.shift / root.slope))
+    fewest = 1.0 if is_start else TURNS[0]
+    distance = max(fewest / (last or 1.0) * nearest, 2 * float(root.shift / root.slope))
     least = far.least(float((root.slope * distance) ** (arb(1) / root.order)))
     size = None if least is None else far.size(least)
     if least is None or size is None:
@@ -71,35 +78,26 @@ def _last_before(asked: Asked, end: int, digits: int, far: FunctionFarOut) -> li
     if turn > TURNS[1]:
         raise _unavailable(bound, "the last time is too many time constants away")
     turned = root.slope ** ball(size.power / root.order)
-    if not last and power > -1 and size.lead != 0:
+    if is_start and power > -1 and (size.lead != 0 or last):
         raise _unavailable(bound, "it is infinite at t = 0", "in Python, ask for times after 0")
     if not last:
         return [(size.lead * turned).real if power >= -1 else arb(0)]
-    small = digits * log(10) + SPARE
-    step = 2 * pi * ASIDE / (turn + small)
-    count = ceil(acosh((1 + small / (mu * float(times.seconds[start]))) / sin(MIDDLE)) / step)
-    bits = bits_for_digits(digits) + ceil((turn + SPARE) / log(2))
-    with precision(bits):
-        root, function = bound.root, bound.enclosed(bits)
-        assert root is not None
-        shift = root.shift / root.slope
-        # Times are sums a + b, and so exponentials are products, as many as one of matrices holds.
-        outer, inner = times.spread(start)
-        starts, waits = list[list[acb]](), list[list[acb]]()
-        for k in range(count + 1):
-            w = acb(arb(MIDDLE), -arb(step) * k)
-            s = arb(mu) * (1 - w.sin()) - shift
-            weight = (1 + bool(k)) * function(s) * w.cos() / s**asked.integrations
-            starts.append([weight * (s * t).exp() for t in outer[: -(-(end - start) // len(inner))]])
-            waits.append([(s * t).exp() for t in inner])
-        sums = (acb_mat(starts).transpose() * acb_mat(waits)).entries()[: end - start]
-        values = [arb(step) * arb(mu) / (2 * arb.pi()) * total.real for total in sums]
-    errors: list[arb] = []
     with precision(64):
-        most, edge = ball(max(power + 1, Fraction(1))), arb(step) * count
+        most, shift = ball(max(power + 1, Fraction(1))), root.shift / root.slope
         scale = size.most * turned * arb(mu) ** ball(power + 1) / arb.pi()
         scale *= (1 - shift / (mu * arb(nearest))) ** -asked.integrations
         scale *= arb(nearest) ** ball(min(power, Fraction(0)))
+        if is_start:  # the bound of the integral along a path in 1/t grows with t
+            size_up_to = scale * arb(turn).exp() * (turn * arb(MIDDLE).sin()).bessel_k(most)
+            return [arb(0, size_up_to.upper() if size_up_to.is_finite() else arb("inf"))]
+    small = digits * log(10) + SPARE
+    step = 2 * pi * ASIDE / (turn + small)
+    count = ceil(acosh((1 + small / (mu * seconds[start])) / sin(MIDDLE)) / step)
+    bits = bits_for_digits(digits) + ceil((turn + SPARE) / log(2))
+    values = _trapezoidal(asked, range(start, end), bits, mu, step, count)
+    errors: list[arb] = []
+    with precision(64):
+        edge = arb(step) * count
         for t in times.enclosed(start)[: end - start]:
             steep = mu * t * arb(MIDDLE).sin()
             between = 2 * (mu * t * arb(MIDDLE - ASIDE).sin()).bessel_k(most)
@@ -110,3 +108,22 @@ def _last_before(asked: Asked, end: int, digits: int, far: FunctionFarOut) -> li
             errors.append(arb(0, reach if slope > 0 and reach.is_finite() else arb("inf")))
     with precision(bits):
         return [value + error for value, error in zip(values, errors, strict=True)]
+
+
+def _trapezoidal(asked: Asked, numbers: range, bits: int, mu: float, step: float, count: int) -> list[arb]:
+    """Return sums over a path at some times."""
+    with precision(bits):
+        root, function = asked.bound.root, asked.bound.enclosed(bits)
+        assert root is not None
+        shift = root.shift / root.slope
+        # Times are sums a + b, and so exponentials are products, as many as one of matrices holds.
+        outer, inner = asked.times.spread(numbers.start)
+        starts, waits = list[list[acb]](), list[list[acb]]()
+        for k in range(count + 1):
+            w = acb(arb(MIDDLE), -arb(step) * k)
+            s = arb(mu) * (1 - w.sin()) - shift
+            weight = (1 + bool(k)) * function(s) * w.cos() / s**asked.integrations
+            starts.append([weight * (s * t).exp() for t in outer[: -(-len(numbers) // len(inner))]])
+            waits.append([(s * t).exp() for t in inner])
+        sums = (acb_mat(starts).transpose() * acb_mat(waits)).entries()[: len(numbers)]
+        return [arb(step) * arb(mu) / (2 * arb.pi()) * total.real for total in sums]

@@ -11,7 +11,7 @@ from symflex.roots import Modes
 
 TEXT = """symflex = 1
 parameters = {{ K = 3, T = "0.2 s" }}
-definitions = {{ C = "D/s", D = "K*exp(-s*T)" }}
+definitions = {{ C = "D/s", D = "K*exp(-s*T)", late = "s*T" }}
 blocks.P = {{ type = "tf", num = "K*exp(-s*T)", den = [1, 2] }}
 signals.y = "{signal}"
 inputs.r = {{}}
@@ -36,6 +36,12 @@ def value(signal, output="y"):
         ("K*exp(-s*T/2)*exp(-(T/2)*s)*r", LATE),
         ("K*exp(-s*(T + T))*r", LATE**2 / 3),
         ("K*exp(-s*T - 2*T*s)*r", LATE**3 / 9),
+        ("K*exp(-(s + 2)*T)*r", LATE * cmath.exp(-0.4)),
+        ("K*exp(-(s - 1)*T)*r", LATE * cmath.exp(0.2)),
+        ("K*exp(-T*(s + 5*K))*r", LATE * cmath.exp(-3)),
+        ("K*exp(2 - s*T)*r", LATE * cmath.exp(2)),
+        ("K*exp(-(2*s + 4)*T/2)*r", LATE * cmath.exp(-0.4)),
+        ("K*exp(-late)*r", LATE),
         ("D*(r - y)", LATE / (1 + LATE)),
         ("C*(r - y)", LATE / (S + LATE)),
         ("P*(r - y)", LATE / (S + 2 + LATE)),

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import mpmath
 import pytest
 from flint import arb
 from mpmath import erf, erfc, exp, gamma, inf, mpf, nsum, pi, sqrt
 
 from symflex import loads
+from symflex.analysis.time_response import time_response
+from symflex.analysis.time_response.sample_times import SampleTimes
 from symflex.errors import ModelError
 
 RESPONSES = {
@@ -25,6 +29,18 @@ RESPONSES = {
         lambda t: 1 - nsum(lambda n: (-(t**0.8)) ** n / gamma(0.8 * n + 1), [0, inf]),
     ),
     "u/(k*s^(1/3))": ("ramp", lambda t: t ** (mpf(4) / 3) / gamma(mpf(7) / 3)),
+}
+
+LATE = {
+    # Those of textbooks, from t = 1/4 on; the second shift theorem, exp(-a*t) times f is F(s + a).
+    "exp(-s/4)*exp(-2*sqrt(s))*u": lambda t: erfc(1 / sqrt(t)),
+    "exp(-(s/4 + 2*sqrt(s)))*u": lambda t: erfc(1 / sqrt(t)),
+    "exp(-sqrt(s)*(2 + sqrt(s)/4))*u": lambda t: erfc(1 / sqrt(t)),
+    "exp(-s/4 - 2*sqrt(s) + 3)*u": lambda t: exp(3) * erfc(1 / sqrt(t)),
+    "exp(-(s + k)/4)*exp(-2*sqrt(s))*u": lambda t: exp(-0.25) * erfc(1 / sqrt(t)),
+    "exp(-s/4)/sqrt(s + k)*u": lambda t: erf(sqrt(t)),
+    "exp(-s/4)/(1 + sqrt(s))*u": lambda t: 1 - exp(t) * erfc(sqrt(t)),
+    "exp(-s/4)/s^(1/3)*u": lambda t: t ** (mpf(1) / 3) / gamma(mpf(4) / 3),
 }
 
 
@@ -58,7 +74,33 @@ def test_values_at_the_beginning_are_limits():
     with pytest.raises(ModelError, match="infinite at t = 0"):
         function("u/sqrt(s*k)").impulse_response([0, 1])
     with pytest.raises(ModelError, match="not all waves decay"):
-        function("exp(-s*k)/(1 + sqrt(s))*u").step_response([1.0])
+        function("u/(1 + sqrt(s) + exp(-s*k))").step_response([1.0])
+
+
+@pytest.mark.parametrize("expression", LATE)
+def test_a_delay_shifts_a_response_with_a_root_of_s(expression):
+    response = function(expression).step_response([0.1, 0.25, 0.5, 3.0])
+    assert response.certified
+    with mpmath.workdps(40):
+        exact = [0, 0, *(float(LATE[expression](mpf(t) - 0.25)) for t in (0.5, 3.0))]
+    assert response.values == pytest.approx(exact, rel=1e-12, abs=1e-12)
+
+
+def test_terms_of_a_sum_with_a_root_of_s_come_each_after_its_own_delay():
+    response = function("exp(-s*0.3)*exp(-2*sqrt(s))*u + exp(-s)*u/sqrt(s*k)").step_response([0.2, 0.8, 2.3])
+    with mpmath.workdps(40):
+        exact = [0, erfc(1 / sqrt(mpf(0.8) - mpf("0.3"))), erfc(1 / sqrt(2)) + 2 * sqrt(mpf(2.3 - 1) / pi)]
+        assert response.values == pytest.approx(list(map(float, exact)), rel=1e-12, abs=1e-12)
+
+
+def test_the_value_at_the_moment_of_a_delay_has_what_comes_before_and_after():
+    # (1 + sqrt(s))/(1 + 2*sqrt(s)) jumps from 0 to 1/2, the limit of s*F/s. 0.3 is no binary number.
+    for expression, limit in (("(1 + sqrt(s*k))/(1 + 2*sqrt(s*k))", 0.5), ("exp(-sqrt(s*k))", 0)):
+        bound = function(f"exp(-s*0.3)*{expression}*u").bound
+        response = time_response(bound, "step", SampleTimes.evenly(Fraction(6, 10), 3))
+        at = response.enclosures[1]
+        assert at.contains(0) and at.contains(limit) and (limit or at.rad() < 1e-12), expression
+        assert response.enclosures[2].rad() < 1e-12
 
 
 def test_an_oscillator_with_a_fractional_damper_rings_as_its_pole_and_its_branch_cut_say():
