@@ -64,7 +64,8 @@ def tape_of(
     if (reason := _refusal(tf)) or not tf.is_reduced:
         return {"refused": reason}, None
     try:
-        bound = bind(tf)
+        moved = [p.name for p in tf.model.parameters if p.value is not None and p.value.rational]
+        bound = bind(tf, varied=moved)
         located = locate(bound, Everything() if tf.is_rational else Modes(modes + 2), digits=17)
         sides = {"poles": list(_parts(tf, bound, 1)), "zeros": list(_parts(tf, bound, 0))}
     except SymflexError as error:

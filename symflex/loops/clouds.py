@@ -153,7 +153,8 @@ def _count(function: CharacteristicFunction, box: Box, sides: Sides, kind: str) 
     edges = list(pairwise([*corners, corners[0]]))[: 4 if base else 3]
     if not all(_is_free(function, box, a, b - a) for a, b in edges):
         return None
-    bound = bind(function.tf, dict(zip(function.names, middle_of(box), strict=True)))
+    middle = dict(zip(function.names, middle_of(box), strict=True))
+    bound = bind(function.tf, middle, varied=function.names)
     located = locate(bound, Rectangle(*map(Fraction, sides)), 10)
     hidden = [sum(h.multiplicity for h in each.hidden) for each in (bound, function.tf)]
     if not located.certificate.certified or hidden[0] > hidden[1]:

@@ -82,7 +82,7 @@ class Loop:
 
     def bound_at(self, gain: Fraction) -> BoundTransferFunction:
         """Return the transfer function for one value of the gain."""
-        return bind(self.source, {**self.given, self.gain.name: gain}, varied=self.gain.name)
+        return bind(self.source, {**self.given, self.gain.name: gain}, varied=(self.gain.name,))
 
     @property
     def with_gain(self) -> tuple[GainPolynomial, ...]:
@@ -158,11 +158,11 @@ def _bound(tf: TransferFunction, gain: ModelParameter, given: dict[str, Given]) 
     candidates += [{**given, gain.name: trial} for trial in TRIALS]
     for candidate in candidates[:-1]:
         try:
-            return bind(tf, candidate, varied=gain.name)
+            return bind(tf, candidate, varied=(gain.name,))
         except ModelError as error:
             if error.diagnostics[0].code != "SF231":
                 raise
-    return bind(tf, candidates[-1], varied=gain.name)
+    return bind(tf, candidates[-1], varied=(gain.name,))
 
 
 GAINS_LISTED = 24

@@ -108,14 +108,14 @@ def _read_value(
 
 
 def bind(
-    tf: TransferFunction, values: Mapping[str, Given] | None = None, *, varied: str = ""
+    tf: TransferFunction, values: Mapping[str, Given] | None = None, *, varied: Collection[str] = ()
 ) -> BoundTransferFunction:
     """Return the transfer function with the declared values, or the given ones in their place.
 
     Values are in SI units or have a unit ("0.8 m"). What vanishes with a parameter that is 0 is gone before
-    anything is divided by it, unless the parameter is the one that is ``varied``. Raises ModelError: SF229 a
-    parameter without value, SF231 the denominator vanishes for these values; UsageError: SF902 an unknown
-    parameter.
+    anything is divided by it, and values with which something cancels mean what a model with these numbers
+    means, unless the parameter is one that is ``varied``. Raises ModelError: SF229 a parameter without value,
+    SF231 the denominator vanishes for these values; UsageError: SF902 an unknown parameter.
     """
     if tf.model.imaginary:
         tf.kernels.without_tapers(*LOSSY_TAPER)
@@ -123,24 +123,19 @@ def bind(
     exact = values_for(tf.model, used, dict(values or {}))
     if tf.is_large:
         return _derived_with_numbers(tf, exact, [p.name for p in tf.model.parameters])
-    if zeros := [name for name, value in exact if not value.rational and name != varied]:
+    if zeros := [name for name, value in exact if not value.rational and name not in varied]:
         with suppress(ModelError):  # with which there may be no model, but the limit of the formula
             return _derived_with_numbers(tf, exact, zeros)
-    images = _substitution(tf, exact)
+    images, every = _substitution(tf, exact), [name for name, _ in exact]
     ring, radicals = images.ring, images.radicals
     if degenerate := _singular(tf, images):
-        try:
-            return _derived_with_numbers(tf, exact, degenerate)
-        except ModelError as error:
-            message = f"a part of {tf.name} is 0/0 or 0 at every s for these values"
-            hint = f"write the limit as a model of its own ({error.diagnostics[0].message})"
-            raise ModelError(Diagnostic("SF231", message, None, hint)) from None
+        return _derived_or_refused(tf, exact, degenerate, f"a part of {tf.name} is 0/0 or 0 at every s")
     # Kept apart, so that factors which these values make equal are still seen to cancel.
     above, below = Factored.number(ring, tf.ratio.unit), Factored.number(ring, 1)
     for factor, exponent in tf.ratio.factors:
         value = images.apply(factor)
         if value.is_zero and exponent < 0:
-            raise _vanishing(f"the denominator of {tf.name}")
+            return _derived_or_refused(tf, exact, every, f"the denominator of {tf.name} is zero")
         if exponent > 0:
             above = above * value**exponent
         else:
@@ -150,6 +145,10 @@ def bind(
         shared = below  # of a function that vanishes for these values every mode is hidden
     varying = [0, *(ring.index[k.generator] for k in tf.kernels.kernels)]
     hidden = [HiddenFactor(f, e) for f, e in shared.factors if any(degree_in(f, i) for i in varying)]
+    if (hidden or tf.hidden) and used and not varied and tf.solve is not None:
+        # A difference of parameters that is zero connects nothing, and subsystems that are equal are one.
+        with suppress(ModelError):
+            return _derived_with_numbers(tf, exact, every)
     for known in tf.hidden:
         value = images.apply(known.polynomial)
         hidden += [
@@ -264,6 +263,17 @@ def _derived_with_numbers(
         derived = derive(nameless, tf.output.name, tf.input.name)
     left = {name: value for name, value in values if name in symbolic and not value.is_imaginary}
     return replace(bind(derived, left), values=values, symbolic=tf)
+
+
+def _derived_or_refused(
+    tf: TransferFunction, values: tuple[tuple[str, ExactValue], ...], names: Collection[str], what: str
+) -> BoundTransferFunction:
+    """Return a function derived with the values of some parameters; SF231 with the reason where none is."""
+    try:
+        return _derived_with_numbers(tf, values, names)
+    except ModelError as error:
+        hint = f"write the limit as a model of its own ({error.diagnostics[0].message})"
+        raise ModelError(Diagnostic("SF231", f"{what} for these values", None, hint)) from None
 
 
 def bind_polynomials(

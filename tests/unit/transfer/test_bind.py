@@ -222,7 +222,8 @@ def test_zero_and_real_values_are_taken():
 def test_a_denominator_that_vanishes_is_told_with_a_way_out():
     found = diagnostic(ModelError, "SF231", {"m": 0, "M": 0, "k": 0, "b": 0})
     assert found.message == "the denominator of Y/F is zero for these values"
-    assert found.hint == "write a rigid or massless limit as a model of its own"
+    assert found.hint.startswith("write the limit as a model of its own (")
+    assert "they float" in found.hint
 
 
 def test_a_rod_without_mass_moves_as_one():
@@ -302,15 +303,16 @@ Z = "(s^2 + d)*s/((s + c)*s^2)*U"
 
 
 def test_what_values_cancel_is_hidden_with_its_power():
-    for values, factors in [
+    for values, roots in [
         ({}, []),
-        ({"a": 2}, [("s + 2", 2)]),
-        ({"a": 2, "d": 2}, [("s + 2", 3)]),
-        ({"d": 5}, [("s + 5", 1)]),
-        ({"a": 5, "d": 2}, [("s + 2", 1), ("s + 5", 1)]),
+        ({"a": 2}, [-2, -2]),
+        ({"a": 2, "d": 2}, [-2, -2, -2]),
+        ({"d": 5}, [-5]),
+        ({"a": 5, "d": 2}, [-5, -2]),
     ]:
         bound = pipeline.bind(derive(HIDING, "Y", "U"), values)
-        assert sorted((str(h.polynomial), h.multiplicity) for h in bound.hidden) == factors, values
+        hidden = [float(h.root.re) for h in pipeline.roots(bound).hidden for _ in range(h.root.multiplicity)]
+        assert sorted(hidden) == roots, values
         s = mpmath.mpf("1.5")
         a, c, d = (mpmath.mpf(values.get(n, v)) for n, v in (("a", 1), ("c", 2), ("d", 3)))
         exact = (s + a) ** 2 * (s + d) / ((s + c) ** 3 * (s + 5))

@@ -286,14 +286,28 @@ def test_the_parameters_of_a_function_stand_in_declared_order_and_only_when_they
     assert [p.name for p in derive(OSCILLATOR, "X", "F").parameters] == ["m", "k", "b"]
 
 
-def test_values_with_which_a_function_vanishes_hide_its_modes():
-    text = (
-        'symflex = 1\nparameters = { a = 2, b = 3 }\ninputs.u = {}\noutputs.y = "(a - b)/(s^2 + 2*s + 4)*u"\n'
-    )
-    (tf,) = pipeline.derive_all(pipeline.loads(text))
-    bound = pipeline.bind(tf, {"b": 2})
-    assert bound.is_zero
-    assert [str(h.polynomial) for h in bound.hidden] == ["s^2 + 2*s + 4"]
+def test_values_that_are_equal_mean_what_a_model_with_these_numbers_means():
+    # A gain that is zero connects nothing, and a subsystem that two terms share is one.
+    text = """symflex = 1
+parameters = {{ a = {a}, b = {b} }}
+inputs.u = {{}}
+outputs.y = "{output}"
+"""
+    for output, hidden, is_zero in (
+        ("(a - b)/(s^2 + 2*s + 4)*u", [], True),
+        ("(a - b)/(s - 1)*u + u/(s + 2)", [], False),
+        ("(s - a)/(s - b)*u/(s + 3)", [2], False),
+        ("u/(s - a) - u/(s - b)", [2], True),
+        ("(s - a)/((s + 4)*(s - b))*u + (s - b)/((s + 5)*(s - a))*u", [2], False),
+    ):
+        (tf,) = pipeline.derive_all(pipeline.loads(text.format(a=3, b=5, output=output)))
+        bound = pipeline.bind(tf, {"a": 2, "b": 2})
+        (fresh,) = pipeline.derive_all(pipeline.loads(text.format(a=2, b=2, output=output)))
+        for function in (bound, pipeline.bind(fresh)):
+            found = pipeline.roots(function)
+            assert [h.root.re for h in found.hidden] == hidden, output
+            assert found.verdict.word == ("unstable" if hidden else "stable"), output
+            assert function.is_zero == is_zero, output
 
 
 def test_a_function_that_vanishes_only_when_it_is_opened_hides_its_modes():
