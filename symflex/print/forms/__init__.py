@@ -10,7 +10,7 @@ from typing import Any
 from symflex.algebra import LAPLACE, degree_in
 from symflex.errors import Diagnostic, InternalError, UsageError, nearest, no_such, refused
 from symflex.expressions import Expression, Name, Number, Sum, format_expression, names, nodes, quotient
-from symflex.print.forms.arrange import Arranged, Arranger, length, reading
+from symflex.print.forms.arrange import Arranged, Arranger, is_long_product, length, reading
 from symflex.print.forms.definitions import definitions_form, shows_origin
 from symflex.print.forms.hidden import hidden_expressions, with_hidden
 from symflex.print.forms.naming import Naming, names_of
@@ -321,7 +321,9 @@ def terms_to_print(tf: AnyTransferFunction, form: str | None = None) -> int:
 
 def _candidates(tf: TransferFunction) -> tuple[str, ...]:
     candidates: tuple[str, ...] = CANDIDATES
-    if not tf.is_rational:
+    if tf.is_rational and not tf.is_large and (is_long_product(tf.num) or is_long_product(tf.den)):
+        candidates = tuple(name for name in CANDIDATES if name != "polynomial")
+    elif not tf.is_rational:
         candidates = tuple(name for name in DISTRIBUTED_CANDIDATES if name in forms_of(tf))
     return candidates if tf.length <= LARGE else candidates[:1]
 

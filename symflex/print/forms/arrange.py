@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cache, cached_property, partial
 from itertools import accumulate, islice, product
-from math import gcd, isqrt
+from math import gcd, isqrt, prod
 from operator import add, neg, sub
 
 from flint import fmpz_mpoly
@@ -483,6 +483,12 @@ class ProductPrinter:
         if isinstance(shortest, Sum) and isinstance(shortest.terms[0], Negative):
             return Negative(Sum(tuple(map(negative, shortest.terms))))
         return shortest
+
+
+def is_long_product(value: Factored) -> bool:
+    """Tell whether factors multiply to more terms than are factored for print: they stay factors then."""
+    sums = [(len(f), abs(e)) for f, e in value.factors if len(f) > 1]
+    return sum(e for _, e in sums) > 1 and prod(n**e for n, e in sums) > FACTOR_LIMIT
 
 
 def length_sides(printer: ProductPrinter, length: Factored) -> Sides:

@@ -6,11 +6,20 @@ from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from math import gcd
 
+from flint import fmpz_mpoly
+
 from symflex.algebra import LAPLACE, Factored, degree_in
 from symflex.equations.elimination import Closure
 from symflex.expressions import Expression, Name, Product, Sum, names, nodes, power, product_of, sum_of
 from symflex.model.linearity import factored_of
-from symflex.print.forms.arrange import Arranger, length, lowest_power_of_s, reading
+from symflex.print.forms.arrange import (
+    Arranger,
+    ProductPrinter,
+    is_long_product,
+    length,
+    lowest_power_of_s,
+    reading,
+)
 from symflex.print.forms.kept import REWRITE_LIMIT, in_definitions, is_divisor
 from symflex.print.forms.notation import constant_symbols
 from symflex.print.forms.polynomial import in_kernels
@@ -37,7 +46,8 @@ def definitions_form(tf: TransferFunction) -> PrintedForm:
     def tidied(part: Expression) -> Expression:
         return _collected(tidied_sum(part, tf.base.index), arranger)
 
-    num, den = (rebuilt(e, tidied) for e in _rewritten(tf, arranger))
+    sides = (tf.ratio.numerator(), tf.ratio.denominator())
+    num, den = (rebuilt(_rewritten(tf, arranger, side), tidied) for side in sides)
     if (closed := tf.closed) is not None:
         closed_num, closed_den = (rebuilt(e, tidied) for e in _from_closure(tf, closed))
         shown = (shows_origin(tf.ratio, closed_num, closed_den), shows_origin(tf.ratio, num, den))
@@ -165,11 +175,19 @@ def _named_sums(tf: TransferFunction, closure: Closure) -> dict[str, Expression]
     return named
 
 
-def _rewritten(tf: TransferFunction, arranger: Arranger) -> tuple[Expression, Expression]:
-    """Return the expanded form, divided by every definition that makes it shorter."""
-    ring = tf.base
-    above, below = (side.over(ring).expand() for side in (tf.ratio.numerator(), tf.ratio.denominator()))
-    if max(len(above), len(below)) <= REWRITE_LIMIT:
-        divisors = [(name, value.expand()) for name, value in tf.definitions if is_divisor(value)]
-        above, below = (in_definitions(p, divisors, ring) for p in (above, below))
-    return arranger.grouped_by_s(above), arranger.grouped_by_s(below)
+def _rewritten(tf: TransferFunction, arranger: Arranger, value: Factored) -> Expression:
+    """Return one side as a polynomial, divided by every definition that makes it shorter.
+
+    Factors of a long product stay as they are.
+    """
+    ring, own = tf.base, value.over(tf.base)
+    divisors = [(name, value.expand()) for name, value in tf.definitions if is_divisor(value)]
+
+    def in_defined(polynomial: fmpz_mpoly) -> fmpz_mpoly:
+        is_short = len(polynomial) <= REWRITE_LIMIT
+        return in_definitions(polynomial, divisors, ring) if is_short else polynomial
+
+    if is_long_product(own):
+        kept = own.map_factors(ring, lambda factor: Factored.polynomial(ring, in_defined(factor)))
+        return ProductPrinter(arranger).quotient(kept)
+    return arranger.grouped_by_s(in_defined(own.expand()))

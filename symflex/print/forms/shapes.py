@@ -140,6 +140,7 @@ class _Signs:
     known: Mapping[str, acb]
     written: Mapping[frozenset[str], Sum]  # the sums free of s in a model, by the texts of their terms
     typed: Sequence[Sequence[Expression]] = ()  # the names of products in a model, in their order
+    lines: frozenset[str] = frozenset()  # names that where lines explain, as arguments of functions of s
     turns: bool = False  # differences of parameters are turned by their values, too
 
     @staticmethod
@@ -163,7 +164,7 @@ class _Signs:
             if {n.name for n in names(line)} <= {*values, *FUNCTIONS}:
                 (values[name],) = principal_values(line, 1, lambda name: [values[name]])
         decays = {name: acb(0) for name, _ in where if name in values and abs(values[name]) < 1 / FAR}
-        return replace(self, known={**self.known, **decays})
+        return replace(self, known={**self.known, **decays}, lines=frozenset(name for name, _ in where))
 
     def like(self, other: Expression) -> _Signs:
         """Return these with the sums of another expression as they are written there."""
@@ -242,7 +243,7 @@ class _Signs:
         may_turn |= not has_s and below == len(terms) and (self.turns or has_number)
         sign = self._sign(whole) if may_turn else 0
         is_negative = sign < 0 if sign else below == 2 * len(terms)
-        ordered = map(self._added, _led(_gathered(turned if is_negative else terms)))
+        ordered = map(self._added, _led(self._gathered(turned if is_negative else terms)))
         total = sum_of(_real_first([*ordered]))
         return negative(total) if is_negative else total
 
@@ -252,6 +253,22 @@ class _Signs:
             if self._sign(total) or self.written.get(_texts(total.terms)) is total:
                 return term
         return _turned(term.operand) or term if isinstance(term, Negative) else term
+
+    def _gathered(self, terms: Sequence[Expression]) -> Sequence[Expression]:
+        """Return terms with powers of s side by side: ``s^2 + 6*s + 5 + K*(s + 1)``."""
+        powers = [i for i, t in enumerate(terms) if not any(map(self._holds_s, nodes(t)))]
+        if not any(S in names(terms[i]) for i in powers):
+            return terms
+        held = [t for i, t in enumerate(terms[: powers[-1]]) if i not in powers and i > powers[0]]
+        return [*terms[: powers[0]], *(terms[i] for i in powers), *held, *terms[powers[-1] + 1 :]]
+
+    def _holds_s(self, part: Expression) -> bool:
+        """Tell whether a part is a sum or a root with s, or a function of what is no constant."""
+        if isinstance(part, Sum) or (isinstance(part, Call) and part.name == "sqrt"):
+            return S in names(part)
+        if not isinstance(part, Call):
+            return False
+        return part.name not in FUNCTIONS or any(n == S or n.name in self.lines for n in names(part.argument))
 
     def absorbed(self, num: Expression) -> Expression:
         """Return minus a numerator, the sign within a sum that ends with a negative term if there is one."""
@@ -304,21 +321,6 @@ def _difference(total: Sum) -> Expression | None:
     if len(turned) == 2 and turned[0] is None and turned[1] is not None:  # noqa: PLR2004
         return sum_of([turned[1], negative(total.terms[0])])
     return None
-
-
-def _gathered(terms: Sequence[Expression]) -> Sequence[Expression]:
-    """Return terms with powers of s side by side: ``s^2 + 6*s + 5 + K*(s + 1)``."""
-    powers = [i for i, t in enumerate(terms) if not any(map(_holds_s, nodes(t)))]
-    if not any(S in names(terms[i]) for i in powers):
-        return terms
-    held = [t for i, t in enumerate(terms[: powers[-1]]) if i not in powers and i > powers[0]]
-    return [*terms[: powers[0]], *(terms[i] for i in powers), *held, *terms[powers[-1] + 1 :]]
-
-
-def _holds_s(part: Expression) -> bool:
-    """Tell whether a part is a sum or a root with s, or a function, whose argument a where line may name."""
-    is_free = isinstance(part, Sum) or (isinstance(part, Call) and part.name == "sqrt")
-    return S in names(part) if is_free else isinstance(part, Call)
 
 
 def _real_first(terms: Sequence[Expression]) -> Sequence[Expression]:
