@@ -9,8 +9,9 @@ from typing import Any
 
 from symflex.algebra import LAPLACE, degree_in
 from symflex.errors import Diagnostic, InternalError, UsageError, nearest, no_such, refused
-from symflex.expressions import Expression, Name, Number, Sum, format_expression, names, nodes, quotient
-from symflex.print.forms.arrange import Arranged, Arranger, is_long_product, length, reading
+from symflex.expressions import Expression, Name, Number, Sum, format_expression, names, nodes, once, quotient
+from symflex.print.forms.arrange import Arranger, is_long_product, length, reading
+from symflex.print.forms.arranged import Arranged
 from symflex.print.forms.definitions import definitions_form, shows_origin
 from symflex.print.forms.hidden import hidden_expressions, with_hidden
 from symflex.print.forms.naming import Naming, names_of
@@ -108,7 +109,7 @@ def print_form(
     arranged again. Raises SF902 when there is no such form, SF229 when it needs numbers; SF992 when the form,
     read back, is not the function.
     """
-    made = _arranged(tf, form, digits, arranged)
+    made = _arranged(tf, form, digits, arranged or Arranged())
     read_back(tf, made, digits if made.name in DECIMAL_FORMS else None)
     if tf.model.root is None:
         return made
@@ -117,9 +118,7 @@ def print_form(
     return replace(made, where=tuple((name, written.get(name, e)) for name, e in made.where))
 
 
-def _arranged(
-    tf: AnyTransferFunction, form: str | None, digits: int, arranged: Arranged | None
-) -> PrintedForm:
+def _arranged(tf: AnyTransferFunction, form: str | None, digits: int, arranged: Arranged) -> PrintedForm:
     if isinstance(tf, NestedTransferFunction):
         if form not in (None, "nested"):
             message = f"{tf.name} was derived in nested form, which cannot be expanded into other forms"
@@ -134,10 +133,10 @@ def _arranged(
     if form is None and tf.model.analysis.print:
         from symflex.print.forms.own import own_form  # few models ask for it
 
-        if (own := _proposed(tf, own_form(tf))) is not None:
+        if (own := _proposed(tf, own_form(tf), arranged)) is not None:
             return own
     if not tf.is_rational:
-        made = _distributed(tf, form, digits, arranged or Arranged())
+        made = _distributed(tf, form, digits, arranged)
     else:
         made = _lumped(tf, form, digits, arranged)
         parts = nodes(quotient(made.num, made.den)) if form is None else ()
@@ -147,8 +146,8 @@ def _arranged(
             and not tf.model.root
             and not any(isinstance(n, Name) and n != S for n in parts)
         ):
-            return _made(tf, "zpk", digits)
-    if form is None and _length(made) > LONG and (written := _written(tf)) is not None:
+            return _made(tf, "zpk", digits, arranged)
+    if form is None and _length(made) > LONG and (written := _written(tf, arranged)) is not None:
         return min((made, written), key=lambda f: _length(f) * (1 if f is made else SHORTER))
     return made
 
@@ -163,7 +162,7 @@ def _distributed(tf: TransferFunction, form: str | None, digits: int, arranged: 
         if form is None:
             made = tuple(_drafted(each, whole, arranged))
         else:
-            made = (_made(whole if form in OF_SUMS else each, form, digits),)
+            made = (_made(whole if form in OF_SUMS else each, form, digits, arranged),)
         return replace(min(made, key=_length), source=own)
 
     closed, opened = arranged.definitions.of(tf), shortest(tf)
@@ -173,16 +172,16 @@ def _distributed(tf: TransferFunction, form: str | None, digits: int, arranged: 
     return opened if MORE * _length(opened) < _length(kept) else kept
 
 
-def _lumped(tf: TransferFunction, form: str | None, digits: int, arranged: Arranged | None) -> PrintedForm:
+def _lumped(tf: TransferFunction, form: str | None, digits: int, arranged: Arranged) -> PrintedForm:
     """Return a form, definitions closed where that is shorter and no form was asked for."""
 
     def shortest(own: TransferFunction) -> PrintedForm:
         if form:
-            return _made(own, form, digits)
-        begun = [FORMS[name](own) for name in _candidates(own)]
+            return _made(own, form, digits, arranged)
+        begun = [FORMS[name](own, arranged) for name in _candidates(own)]
         rough = {made.name: length(made.num, made.den) for made in begun if not is_hiding(made)}
         most = max(LONG, UNSHAPED * min(rough.values(), default=0))
-        made = (_explained(own, f) for f in begun if rough.get(f.name, 0) <= most)
+        made = (_explained(own, f, arranged) for f in begun if rough.get(f.name, 0) <= most)
         return min(made, key=lambda f: (is_hiding(f), _length(f)))
 
     def is_hiding(made: PrintedForm) -> bool:
@@ -190,7 +189,7 @@ def _lumped(tf: TransferFunction, form: str | None, digits: int, arranged: Arran
 
     opened = shortest(tf)
     is_kept = form is None and bool(tf.definitions)
-    closed = (arranged or Arranged()).definitions.of(tf) if is_kept else None
+    closed = arranged.definitions.of(tf) if is_kept else None
     # What cancels only where definitions are opened would stand in both sides.
     if closed is None or _order(closed) > _order(tf):
         return opened
@@ -208,18 +207,18 @@ def _order(tf: TransferFunction) -> int:
     return sum(degree_in(f, 0) * e for f, e in tf.num.factors)
 
 
-def _written(tf: TransferFunction) -> PrintedForm | None:
+def _written(tf: TransferFunction, arranged: Arranged) -> PrintedForm | None:
     """Return a function as a sum of blocks, None if it is not written so."""
     from symflex.print.forms.written import written_form  # few prints are so long
 
-    return _proposed(tf, written_form(tf))
+    return _proposed(tf, written_form(tf), arranged)
 
 
-def _proposed(tf: TransferFunction, made: PrintedForm | None) -> PrintedForm | None:
+def _proposed(tf: TransferFunction, made: PrintedForm | None, arranged: Arranged) -> PrintedForm | None:
     """Return a form that nobody asked for, made from a text or from values alone, if it is read back."""
     if made is None:
         return None
-    made = _explained(tf, made)
+    made = _explained(tf, made, arranged)
     try:
         read_back(tf, made)
     except InternalError:
@@ -227,10 +226,10 @@ def _proposed(tf: TransferFunction, made: PrintedForm | None) -> PrintedForm | N
     return made
 
 
-def _made(tf: TransferFunction, form: str, digits: int) -> PrintedForm:
+def _made(tf: TransferFunction, form: str, digits: int, arranged: Arranged) -> PrintedForm:
     require(tf, form)
     arguments = (tf, digits) if form in DECIMAL_FORMS else (tf,)
-    return _explained(tf, FORMS[form](*arguments))
+    return _explained(tf, FORMS[form](*arguments), arranged)
 
 
 def _drafted(tf: TransferFunction, whole: TransferFunction, arranged: Arranged) -> Iterator[PrintedForm]:
@@ -240,13 +239,13 @@ def _drafted(tf: TransferFunction, whole: TransferFunction, arranged: Arranged) 
     ]
     drafts = [draft for draft in begun if draft is not None]
     most = max(FEW, MORE * min(draft.terms for draft in drafts))
-    yield from (_explained(tf, draft.finish()) for draft in drafts if draft.terms <= most)
+    yield from (_explained(tf, draft.finish(), arranged) for draft in drafts if draft.terms <= most)
 
 
-def _explained(tf: TransferFunction, made: PrintedForm) -> PrintedForm:
+def _explained(tf: TransferFunction, made: PrintedForm, arranged: Arranged) -> PrintedForm:
     """Return a form as a person would write it, with the definitions that occur in it."""
     if made.name not in AS_ARRANGED:
-        made = shaped(tf.model, made)
+        made = shaped(tf.model, made, arranged.signs(tf.model))
     explained = {name for name, _ in made.where}
     parts = (made.num, made.den, *(e for _, e in made.where), *(law for _, law in (*made.laws, *made.closed)))
     meanings = {d.name: d.expression for d in tf.model.definitions if d.name not in explained}
@@ -339,7 +338,18 @@ def _length(form: PrintedForm) -> float:
 def _shared(*parts: Expression) -> int:
     """Return the characters that ``K*(T*s + 1)`` may take more than ``K*T*s + K``."""
     sums = {n for e in parts for n in nodes(e) if isinstance(n, Sum)}
-    return SHARED * sum(bool(set.intersection(*({*powers_of(t)[1]} for t in n.terms))) for n in sums)
+    return SHARED * sum(map(_shares, sums))
+
+
+@once
+def _shares(total: Sum) -> bool:
+    """Tell whether all terms of a sum have a factor in common."""
+    shared = {*powers_of(total.terms[0])[1]}
+    for term in total.terms[1:]:
+        if not shared:
+            return False
+        shared.intersection_update(powers_of(term)[1])
+    return bool(shared)
 
 
 __all__ = [

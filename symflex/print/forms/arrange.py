@@ -6,7 +6,7 @@ Numerator and denominator are products of such sums, each in the arrangement tha
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, cached_property, partial
 from itertools import accumulate, islice, product
@@ -50,8 +50,6 @@ from symflex.expressions import (
 )
 from symflex.model.model import IMAGINARY
 from symflex.print.forms.kept import KeptDefinitions
-from symflex.transfer.derive import ClosedDefinitions
-from symflex.transfer.of_model import UNASKED
 
 GROUP_LIMIT = 5_000  # number of terms up to which a polynomial is nested for print
 DEEPEST_NEST = 60  # degree in all parameters up to which a sum is nested: each level takes out one
@@ -127,6 +125,22 @@ class Arranger:
 
     def coefficient(self, polynomial: fmpz_mpoly, *, factored: bool = True) -> Expression:
         """Return a polynomial free of s as a product of factors, or as a sum when it has none."""
+        return self._once("factored" if factored else "sum", polynomial, self._coefficient, factored)
+
+    def _once(
+        self, how: str, polynomial: fmpz_mpoly, make: Callable[..., Expression], *more: object
+    ) -> Expression:
+        """Return what is made of a polynomial, the same object every time."""
+        key = how, polynomial.context(), tuple(polynomial.to_dict().items())
+        if key not in self._made:
+            self._made[key] = make(polynomial, *more)
+        return self._made[key]
+
+    @cached_property
+    def _made(self) -> dict[tuple[object, ...], Expression]:
+        return {}
+
+    def _coefficient(self, polynomial: fmpz_mpoly, factored: bool) -> Expression:
         polynomial = self.closed(polynomial)
         if len(polynomial) == 1 or not factored or len(polynomial) > FACTOR_LIMIT:
             return self._with_content(polynomial)
@@ -163,6 +177,9 @@ class Arranger:
 
     def grouped_by_s(self, polynomial: fmpz_mpoly) -> Expression:
         """Return the shortest of the nested print and those by descending powers of s."""
+        return self._once("by s", polynomial, self._shortest)
+
+    def _shortest(self, polynomial: fmpz_mpoly) -> Expression:
         nested = self.grouped(polynomial)
         if len(polynomial) > GROUP_LIMIT or not degree_in(polynomial, 0):
             return nested
@@ -500,22 +517,6 @@ def length_sides(printer: ProductPrinter, length: Factored) -> Sides:
             turned = sorted(map(negative, last.terms), key=lambda t: isinstance(t, Negative))
             above = product_of([*factors[:-1], Sum(tuple(turned))])
     return above, below
-
-
-@dataclass(frozen=True, eq=False)
-class Arranged:
-    """Printers of functions that are printed together; those of equal symbols are one, and arrange once."""
-
-    _printers: dict[object, ProductPrinter] = field(default_factory=dict)
-    definitions: ClosedDefinitions = field(default_factory=lambda: ClosedDefinitions(UNASKED))
-
-    def printer(self, arranger: Arranger) -> ProductPrinter:
-        """Return a printer that prints as a new one of the arranger does."""
-        if arranger.kept is not None:
-            return ProductPrinter(arranger)
-        symbols = tuple((name, format_expression(e)) for name, e in sorted(arranger.names.items()))
-        key = (arranger.ring.names, symbols, tuple(sorted(arranger.degrees.items())), arranger.apart)
-        return self._printers.setdefault(key, ProductPrinter(arranger))
 
 
 def _cost(expression: Expression) -> int:

@@ -20,6 +20,7 @@ from symflex.print.forms.arrange import (
     lowest_power_of_s,
     reading,
 )
+from symflex.print.forms.arranged import Arranged
 from symflex.print.forms.kept import REWRITE_LIMIT, in_definitions, is_divisor
 from symflex.print.forms.notation import constant_symbols
 from symflex.print.forms.polynomial import in_kernels
@@ -30,7 +31,7 @@ from symflex.transfer import ClosedForm, TransferFunction
 SMALL = 200  # number of terms up to which every arrangement is tried
 
 
-def definitions_form(tf: TransferFunction) -> PrintedForm:
+def definitions_form(tf: TransferFunction, arranged: Arranged | None = None) -> PrintedForm:
     """Return the shortest print that keeps sums of the network and definitions closed.
 
     Candidates are the elimination's own closed form, and the expanded polynomial rewritten in the
@@ -38,10 +39,11 @@ def definitions_form(tf: TransferFunction) -> PrintedForm:
     """
     if not tf.is_rational:
         return in_kernels(tf, "definitions", tf.ratio)
+    arranged = arranged or Arranged()
     if tf.closed is not None and _is_large(tf):
-        return PrintedForm("definitions", *_from_closure(tf, tf.closed))
+        return PrintedForm("definitions", *_from_closure(tf, tf.closed, arranged))
 
-    arranger = Arranger.plain(tf.base, constant_symbols(tf))
+    arranger = arranged.printer(Arranger.plain(tf.base, constant_symbols(tf))).arranger
 
     def tidied(part: Expression) -> Expression:
         return _collected(tidied_sum(part, tf.base.index), arranger)
@@ -49,7 +51,7 @@ def definitions_form(tf: TransferFunction) -> PrintedForm:
     sides = (tf.ratio.numerator(), tf.ratio.denominator())
     num, den = (rebuilt(_rewritten(tf, arranger, side), tidied) for side in sides)
     if (closed := tf.closed) is not None:
-        closed_num, closed_den = (rebuilt(e, tidied) for e in _from_closure(tf, closed))
+        closed_num, closed_den = (rebuilt(e, tidied) for e in _from_closure(tf, closed, arranged))
         shown = (shows_origin(tf.ratio, closed_num, closed_den), shows_origin(tf.ratio, num, den))
         # A rational factor may stand differently in the two: take both parts from one of them then.
         if shown[0] != shown[1]:
@@ -154,12 +156,15 @@ def _is_large(tf: TransferFunction) -> bool:
     return max(tf.length, 1) > (REWRITE_LIMIT if tf.definitions else SMALL)
 
 
-def _from_closure(tf: TransferFunction, closed: ClosedForm) -> tuple[Expression, Expression]:
+def _from_closure(
+    tf: TransferFunction, closed: ClosedForm, arranged: Arranged
+) -> tuple[Expression, Expression]:
     closure = closed.closure
-    base = Arranger.plain(closure.base, constant_symbols(tf))
+    base = arranged.printer(Arranger.plain(closure.base, constant_symbols(tf))).arranger
     named = _named_sums(tf, closure)
     symbols = {**constant_symbols(tf), **{n: named.get(n, base.grouped_by_s(p)) for n, p in closure.sums}}
-    arranger = Arranger(closure.ring, symbols, {n: degree_in(p, 0) for n, p in closure.sums})
+    own = Arranger(closure.ring, symbols, {n: degree_in(p, 0) for n, p in closure.sums})
+    arranger = arranged.printer(own).arranger
     return arranger.grouped(closed.num), arranger.grouped(closed.den)
 
 

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored
 from symflex.expressions import Expression, Name, negative, number, power, product_of, quotient, sum_of
-from symflex.print.forms.arrange import Arranged, Arranger, shortest_sides
+from symflex.print.forms.arrange import Arranger, shortest_sides
+from symflex.print.forms.arranged import Arranged
 from symflex.print.forms.invariants import Invariants, in_krylov_functions, krylov_name
 from symflex.print.forms.kept import KeptDefinitions
 from symflex.print.forms.naming import Naming

@@ -24,6 +24,7 @@ from symflex.expressions import (
     sum_of,
 )
 from symflex.print.forms.arrange import Arranger, ProductPrinter, length_sides
+from symflex.print.forms.arranged import Arranged
 from symflex.print.forms.kept import KeptDefinitions
 from symflex.print.forms.naming import Naming
 from symflex.transfer import TransferFunction
@@ -64,10 +65,13 @@ def angles_of(table: KernelTable, used: Collection[str] | None = None) -> tuple[
     )
 
 
-def plain_printer(tf: TransferFunction, ring: Ring | None = None) -> ProductPrinter:
+def plain_printer(
+    tf: TransferFunction, ring: Ring | None = None, arranged: Arranged | None = None
+) -> ProductPrinter:
     """Return a printer for values of s and parameters alone."""
     own = ring or tf.ring
-    return ProductPrinter(Arranger.plain(own, constant_symbols(tf), (), KeptDefinitions.of(tf, own)))
+    arranger = Arranger.plain(own, constant_symbols(tf), (), KeptDefinitions.of(tf, own))
+    return (arranged or Arranged()).printer(arranger)
 
 
 def notation_of(

@@ -10,7 +10,8 @@ from flint import fmpz_mpoly
 
 from symflex.algebra import LAPLACE, Factored, Ring, by_powers, degree_in, irreducible_factors
 from symflex.expressions import Expression, Name, number, power, product_of, quotient, sum_of
-from symflex.print.forms.arrange import Arranged, Arranger, ProductPrinter, shortest_sides
+from symflex.print.forms.arrange import Arranger, ProductPrinter, shortest_sides
+from symflex.print.forms.arranged import Arranged
 from symflex.print.forms.kept import KeptDefinitions
 from symflex.print.forms.naming import Naming
 from symflex.print.forms.notation import (
@@ -24,10 +25,10 @@ from symflex.print.forms.printed import BegunForm, PrintedForm, terms_of
 from symflex.transfer import TransferFunction
 
 
-def polynomial_form(tf: TransferFunction) -> PrintedForm:
+def polynomial_form(tf: TransferFunction, arranged: Arranged | None = None) -> PrintedForm:
     """Return numerator and denominator by descending powers of s, coefficients collected and factored."""
     notation = Notation({}, ())
-    arranger = plain_printer(tf, tf.ratio.ring).arranger
+    arranger = plain_printer(tf, tf.ratio.ring, arranged).arranger
     if not tf.is_rational:
         notation = notation_of(tf, tf.ratio.ring.used_in(f for f, _ in tf.ratio.factors), Naming.of(tf))
         arranger = kernel_printer(tf, notation).arranger
@@ -76,13 +77,14 @@ def _divided(arranger: Arranger, ring: Ring, polynomial: fmpz_mpoly, divisor: fm
     return sum_of(terms) if terms else number(0)
 
 
-def factored_form(tf: TransferFunction) -> PrintedForm:
+def factored_form(tf: TransferFunction, arranged: Arranged | None = None) -> PrintedForm:
     """Return numerator and denominator as products of irreducible factors, also of roots and kernels."""
     if not tf.is_rational:
         from symflex.print.forms.irreducible import irreducible_kernels  # only with beams
 
         return in_kernels(tf, "factored", irreducible_kernels(tf.ratio, tf.kernels))
-    arranger, value = plain_printer(tf, tf.ratio.ring).arranger, tf.radicals.with_powers(tf.ratio)
+    arranger = plain_printer(tf, tf.ratio.ring, arranged).arranger
+    value = tf.radicals.with_powers(tf.ratio)
     return PrintedForm(
         "factored", _irreducible(arranger, value.numerator()), _irreducible(arranger, value.denominator())
     )

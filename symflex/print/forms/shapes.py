@@ -18,6 +18,7 @@ from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from itertools import combinations
 from math import gcd
 from typing import Final
@@ -69,16 +70,16 @@ S: Final = Name(LAPLACE)
 PI: Final = Name("pi")
 
 
-def shaped(model: Model, form: PrintedForm) -> PrintedForm:
+def shaped(model: Model, form: PrintedForm, signs: Signs | None = None) -> PrintedForm:
     """Return a form in the shape a person would give it; one too long to be read as it is."""
     if sum(len(nodes(e)) for e in _parts(form)) > LARGEST:
         return form
     form = _with_plain_lines(form)
-    signs = _Signs.of(model).with_decays(form.where)
+    signs = (signs or Signs.of(model)).with_decays(form.where)
     made = _signed(form, signs, model)
     if _minus_signs(*_parts(form)):
         # Differences turned by the declared values: as often as not that gives more minus signs.
-        turned = _signed(form, replace(signs, turns=True), model)
+        turned = _signed(form, signs.turning, model)
         made = min(made, turned, key=lambda f: _minus_signs(*_parts(f)))
     if counted := {Name(p.name) for p in model.parameters if p.cycles == 1}:
         num, den = (rebuilt(e, lambda part: _in_radians(part, counted)) for e in (made.num, made.den))
@@ -119,7 +120,7 @@ def _differ_in_sign(num: Expression, den: Expression) -> bool:
     return any(_texts([negative(t) for t in n.terms]) in above for n in below)
 
 
-def _signed(form: PrintedForm, signs: _Signs, model: Model) -> PrintedForm:
+def _signed(form: PrintedForm, signs: Signs, model: Model) -> PrintedForm:
     where = tuple((name, signs.oriented(e)) for name, e in form.where)
     num, den = signs.oriented(form.num), signs.oriented(form.den)
     if _differ_in_sign(num, den):
@@ -134,7 +135,7 @@ def _signed(form: PrintedForm, signs: _Signs, model: Model) -> PrintedForm:
 
 
 @dataclass(frozen=True, eq=False)
-class _Signs:
+class Signs:
     """Turns sums, so that they are positive or as the model writes them."""
 
     known: Mapping[str, acb]
@@ -144,7 +145,8 @@ class _Signs:
     turns: bool = False  # differences of parameters are turned by their values, too
 
     @staticmethod
-    def of(model: Model) -> _Signs:
+    def of(model: Model) -> Signs:
+        """Return what turns the sums of formulas of a model."""
         values = {p.name: acb(enclosure(p.value)()) for p in model.parameters if p.value is not None}
         values |= {LAPLACE: acb(FAR), "pi": acb.pi()}
         for d in model.definitions:
@@ -155,10 +157,12 @@ class _Signs:
         fixed = (S, Name("pi"), Name(IMAGINARY))
         products = (map(_base, n.factors) for n in parts if isinstance(n, Product))
         typed = dict.fromkeys(tuple(b for b in bases if b not in fixed) for bases in products)
-        return _Signs(values, {_texts(n.terms): n for n in sums}, sorted(typed, key=len))
+        return Signs(values, {_texts(n.terms): n for n in sums}, sorted(typed, key=len))
 
-    def with_decays(self, where: Sequence[tuple[str, Expression]]) -> _Signs:
+    def with_decays(self, where: Sequence[tuple[str, Expression]]) -> Signs:
         """Return these with what decays by the where lines, as ``exp(-gamma*l)``: it is zero far away."""
+        if not where:
+            return self
         values = dict(self.known)
         for name, line in reversed(where):
             if {n.name for n in names(line)} <= {*values, *FUNCTIONS}:
@@ -166,14 +170,24 @@ class _Signs:
         decays = {name: acb(0) for name, _ in where if name in values and abs(values[name]) < 1 / FAR}
         return replace(self, known={**self.known, **decays}, lines=frozenset(name for name, _ in where))
 
-    def like(self, other: Expression) -> _Signs:
+    def like(self, other: Expression) -> Signs:
         """Return these with the sums of another expression as they are written there."""
         sums = {_texts(n.terms): n for n in nodes(other) if isinstance(n, Sum)}
         return replace(self, written={**sums, **self.written})
 
     def oriented(self, expression: Expression) -> Expression:
         """Return an expression with every sum in it as a person would write it."""
-        return rebuilt(expression, self._oriented)
+        return rebuilt(expression, self._oriented, self._turned)
+
+    @cached_property
+    def _turned(self) -> dict[Expression, Expression]:
+        """The sums that were written so."""
+        return {}
+
+    @cached_property
+    def turning(self) -> Signs:
+        """The same, but differences of parameters are turned by their values, too."""
+        return replace(self, turns=True)
 
     def _oriented(self, part: Expression) -> Expression:
         match part:
@@ -449,9 +463,16 @@ def _over(total: Sum, call: Call, one: str, ratio: str) -> tuple[int, Expression
     return whole, sum_of([of_powers(x / whole, p) for x, p in terms])
 
 
-def rebuilt(expression: Expression, change: Callable[[Expression], Expression]) -> Expression:
-    """Return an expression made anew from its parts, so that numbers are multiplied, each changed."""
-    sums: dict[Expression, Expression] = {}
+def rebuilt(
+    expression: Expression,
+    change: Callable[[Expression], Expression],
+    known: dict[Expression, Expression] | None = None,
+) -> Expression:
+    """Return an expression made anew from its parts, so that numbers are multiplied, each changed.
+
+    What becomes of sums may be known, and is added to that.
+    """
+    sums: dict[Expression, Expression] = {} if known is None else known
 
     def again(part: Expression) -> Expression:
         match part:

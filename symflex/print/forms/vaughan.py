@@ -28,7 +28,8 @@ from symflex.expressions import (
     quotient,
     sum_of,
 )
-from symflex.print.forms.arrange import Arranged, Arranger, Sides, length
+from symflex.print.forms.arrange import Arranger, Sides, length
+from symflex.print.forms.arranged import Arranged
 from symflex.print.forms.kept import KeptDefinitions
 from symflex.print.forms.naming import Naming
 from symflex.print.forms.notation import (
