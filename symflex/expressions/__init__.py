@@ -19,10 +19,12 @@ from symflex.expressions.nodes import (
     Quotient,
     Sum,
     fold,
+    is_longer,
     is_number,
     measured,
     names,
     names_among,
+    names_in,
     negative,
     nodes,
     number,
@@ -34,6 +36,7 @@ from symflex.expressions.nodes import (
     replace_values,
     substitute,
     sum_of,
+    sums_in,
     with_children,
 )
 from symflex.expressions.parse import parse, parse_equation

@@ -341,9 +341,47 @@ def once(find: Callable[[Any], Value]) -> Callable[[Any], Value]:
     return found
 
 
-def names(expression: Expression) -> tuple[Name | Attribute | Call | Derivative, ...]:
+Named = Name | Attribute | Call | Derivative
+
+
+def names(expression: Expression) -> tuple[Named, ...]:
     """Return every node of a tree, or an equation, that bears a name; calls before their arguments."""
-    return tuple(n for n in nodes(expression) if isinstance(n, Name | Attribute | Call | Derivative))
+    return tuple(n for n in nodes(expression) if isinstance(n, Named))
+
+
+def _below(expression: Expression) -> set[Expression]:
+    """Return the different parts of a sum, or of what is none and itself; sums in it are not opened."""
+    found = set[Expression]()
+    new = {*expression.terms} if isinstance(expression, Sum) else {expression}
+    while new:
+        found |= new
+        new = set().union(*[node.children for node in new if type(node) is not Sum]) - found
+    return found
+
+
+@once
+def names_in(expression: Expression) -> frozenset[Named]:
+    """Return what :func:`names` does, each once."""
+    below = _below(expression)
+    own = {n for n in below if isinstance(n, Named)}
+    return frozenset(own).union(*[names_in(n) for n in below if type(n) is Sum])
+
+
+@once
+def sums_in(expression: Expression) -> frozenset[Sum]:
+    """Return the different sums in an expression, which may be one itself."""
+    inner = [n for n in _below(expression) if type(n) is Sum]
+    own = (expression,) if isinstance(expression, Sum) else ()
+    return frozenset(own).union(*map(sums_in, inner))
+
+
+def is_longer(expressions: Iterable[Expression], most: int) -> bool:
+    """Tell whether expressions have more parts than so many, without looking at all of these."""
+    pending = [*expressions]
+    while pending and most >= 0:
+        most -= 1
+        pending.extend(pending.pop().children)
+    return most < 0
 
 
 def names_among(expression: Expression, known: Container[str]) -> list[str]:

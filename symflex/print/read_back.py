@@ -35,6 +35,7 @@ from symflex.expressions import (
     Expression,
     Name,
     format_expression,
+    is_longer,
     names,
     parse,
     parse_equation,
@@ -311,22 +312,13 @@ class _Points:
                 check(self._chosen, self.value(expression), self.value(left), format_expression(left))
 
 
-def _is_longer(expression: Expression, most: int) -> bool:
-    """Tell whether an expression has more parts than so many, without looking at all of these."""
-    pending = [expression]
-    while pending and most >= 0:
-        most -= 1
-        pending.extend(pending.pop().children)
-    return most < 0
-
-
 def _as_read(form: PrintedForm) -> PrintedForm:
     """Return a form as its text is read; one too long, or with Bessel functions, as it is."""
     room = LONGEST_TEXT
 
     def read(expression: E, reader: Callable[..., E]) -> E:
         nonlocal room
-        if _is_longer(expression, room):
+        if is_longer([expression], room):
             return expression
         text = format_expression(expression)
         room -= len(text)

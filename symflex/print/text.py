@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from itertools import chain, repeat
+from re import Pattern
 from re import compile as compile_pattern
 from textwrap import wrap
 from typing import NamedTuple
@@ -144,10 +145,10 @@ def _lay_out(text: str, width: int, hanging: int) -> list[str]:
     """Return ``text`` in lines; the terms of a broken sum are indented by ``hanging`` after the first."""
     if len(text) <= width or width < NARROWEST:
         return [text]
-    terms = _split(text, lambda i: text[i] in "+-" and text[i - 1] == " ")
+    terms = _split(text, _SIGNS)
     if len(terms) > 1:
         return _lay_out_sum(terms, width, hanging)
-    factors = _split(text, lambda i: text[i - 1] == "*" or text[i] == "/")
+    factors = _split(text, _TIMES)
     if len(factors) > 1:
         return _lay_out_product(factors, width)
     if (group := _group(text)) is None:
@@ -202,20 +203,21 @@ def _lay_out_product(factors: Sequence[str], width: int) -> list[str]:
     return lines
 
 
-def _split(text: str, breaks: Callable[[int], bool]) -> list[str]:
+def _split(text: str, breaks: Pattern[str]) -> list[str]:
     """Return the parts of a text between the places outside parentheses where it may break."""
     depth, start = 0, 0
     parts: list[str] = []
-    for stop in _STOPS.finditer(text):
-        i = stop.start()
-        if not depth and i > start and breaks(i):
+    for stop in breaks.finditer(text):
+        i, found = stop.start(), stop[0]
+        if not depth and i > start and stop.lastindex:
             parts.append(text[start:i].rstrip())
             start = i
-        depth += {"(": 1, ")": -1}.get(text[i], 0)
+        depth += 1 if found == "(" else -1 if found == ")" else 0
     return [*parts, text[start:]]
 
 
-_STOPS = compile_pattern(r"[()+\-/]|(?<=\*).")  # where a text may break, and what opens and closes groups
+# Groups where a sum, or a product, may break; parentheses open and close what is not broken.
+_SIGNS, _TIMES = compile_pattern(r"[()]|(?<= )([+\-])"), compile_pattern(r"(?<=\*)(.)|(/)|[()]")
 
 
 class Passage(NamedTuple):

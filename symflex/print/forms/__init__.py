@@ -9,7 +9,19 @@ from typing import Any
 
 from symflex.algebra import LAPLACE, degree_in
 from symflex.errors import Diagnostic, InternalError, UsageError, nearest, no_such, refused
-from symflex.expressions import Expression, Name, Number, Sum, format_expression, names, nodes, once, quotient
+from symflex.expressions import (
+    Expression,
+    Name,
+    Number,
+    Sum,
+    format_expression,
+    names,
+    names_in,
+    nodes,
+    once,
+    quotient,
+    sums_in,
+)
 from symflex.print.forms.arrange import Arranger, is_long_product, length, reading
 from symflex.print.forms.arranged import Arranged
 from symflex.print.forms.definitions import definitions_form, shows_origin
@@ -139,14 +151,15 @@ def _arranged(tf: AnyTransferFunction, form: str | None, digits: int, arranged: 
         made = _distributed(tf, form, digits, arranged)
     else:
         made = _lumped(tf, form, digits, arranged)
-        parts = nodes(quotient(made.num, made.den)) if form is None else ()
-        longest = max((abs(n.value.numerator) for n in parts if isinstance(n, Number)), default=0)
+        whole = quotient(made.num, made.den)
         if (
-            longest > READABLE
+            form is None
             and not tf.model.root
-            and not any(isinstance(n, Name) and n != S for n in parts)
+            and not any(isinstance(n, Name) and n != S for n in names_in(whole))
         ):
-            return _made(tf, "zpk", digits, arranged)
+            numbers = (abs(n.value.numerator) for n in nodes(whole) if isinstance(n, Number))
+            if max(numbers, default=0) > READABLE:
+                return _made(tf, "zpk", digits, arranged)
     if form is None and _length(made) > LONG and (written := _written(tf, arranged)) is not None:
         return min((made, written), key=lambda f: _length(f) * (1 if f is made else SHORTER))
     return made
@@ -294,7 +307,7 @@ def with_shared_denominators(
     shared, naming = list(forms), Naming(())
     for tf, form in zip(tfs, forms, strict=True):
         parts = (form.num, form.den, *(e for _, e in (*form.where, *form.laws, *form.closed)))
-        naming.keep((*names_of(tf.model), *(n.name for e in parts for n in names(e))))
+        naming.keep((*names_of(tf.model), *(n.name for e in parts for n in names_in(e))))
         naming.keep(name for name, _ in (*form.where, *form.laws))
     if len(groups) > 1:
         naming.keep("D")  # LaTeX calls every long denominator D(s) that has no name
@@ -337,8 +350,7 @@ def _length(form: PrintedForm) -> float:
 
 def _shared(*parts: Expression) -> int:
     """Return the characters that ``K*(T*s + 1)`` may take more than ``K*T*s + K``."""
-    sums = {n for e in parts for n in nodes(e) if isinstance(n, Sum)}
-    return SHARED * sum(map(_shares, sums))
+    return SHARED * sum(map(_shares, frozenset().union(*map(sums_in, parts))))
 
 
 @once

@@ -25,9 +25,7 @@ from symflex.algebra import (
     square_free_factors,
 )
 from symflex.expressions import (
-    Attribute,
     Call,
-    Derivative,
     Expression,
     Name,
     Negative,
@@ -38,14 +36,15 @@ from symflex.expressions import (
     Sum,
     format_expression,
     names,
+    names_in,
     negative,
-    nodes,
     number,
     once,
     power,
     product_of,
     quotient,
     sum_of,
+    sums_in,
     text_length,
 )
 from symflex.model.model import IMAGINARY
@@ -131,6 +130,8 @@ class Arranger:
         self, how: str, polynomial: fmpz_mpoly, make: Callable[..., Expression], *more: object
     ) -> Expression:
         """Return what is made of a polynomial, the same object every time."""
+        if len(polynomial) > SMALL:
+            return make(polynomial, *more)
         key = how, polynomial.context(), tuple(polynomial.to_dict().items())
         if key not in self._made:
             self._made[key] = make(polynomial, *more)
@@ -323,6 +324,8 @@ class Arranger:
     def _monomial(self, monomial: tuple[int, ...], coefficient: int) -> Expression:
         """Return number, pi, parameters in declared order, s, closed sums."""
         factors = [self._powers(i, monomial[i]) for i in self._print_order if monomial[i]]
+        if coefficient == 1 and len(factors) > 1 and all(type(f) in (Name, Power) for f in factors):
+            return Product(tuple(factors))  # most are so, and need not be taken apart
         return product_of([number(coefficient), *factors])
 
     def _reading(self, expression: Expression) -> float:
@@ -539,12 +542,8 @@ def with_squares(ring: Ring, polynomial: fmpz_mpoly) -> Factored:
 
 def reading(expression: Expression, *, are_quadratics: bool = True) -> float:
     """Return the length of an expression, and more of what is nested in it as ``s*(a*s + b) + c``."""
-    wide = {e for e in _sums(expression) if _is_nested(e) or (are_quadratics and _is_quadratic(e))}
+    wide = {e for e in sums_in(expression) if _is_nested(e) or (are_quadratics and _is_quadratic(e))}
     return length(expression) + (NESTED - 1) * length(*wide)
-
-
-def _sums(expression: Expression) -> list[Sum]:
-    return [e for e in nodes(expression) if isinstance(e, Sum)]
 
 
 @once
@@ -555,22 +554,6 @@ def _is_nested(total: Sum) -> bool:
         if len(inner) == 1 and not inner[0].isdisjoint(factors):
             return True
     return False
-
-
-@once
-def names_in(expression: Expression) -> frozenset[Expression]:
-    """Return what :func:`names` does, each once."""
-    found = set[Expression]()
-    pending = [*expression.terms] if isinstance(expression, Sum) else [expression]
-    while pending:
-        node = pending.pop()
-        if isinstance(node, Sum):
-            found |= names_in(node)
-            continue
-        if isinstance(node, Name | Attribute | Call | Derivative):
-            found.add(node)
-        pending.extend(node.children)
-    return frozenset(found)
 
 
 @once
@@ -604,7 +587,7 @@ def _power(
         case Name(name):
             return int(name == LAPLACE)
         case Sum(terms):
-            return choose(map(power, terms))
+            return choose(map(power, terms)) if Name(LAPLACE) in names_in(expression) else 0
         case Product(factors):
             return sum(map(power, factors))
         case Quotient(above, below):

@@ -15,7 +15,7 @@ from symflex.expressions import (
     Name,
     Product,
     Quotient,
-    names,
+    names_in,
     negative,
     number,
     power,
@@ -283,7 +283,7 @@ def reachable(parts: Iterable[Expression], lines: Iterable[Line]) -> tuple[Line,
     meanings = dict(lines)
     pending, used = list(parts), set()
     while pending:
-        for node in names(pending.pop()):
+        for node in names_in(pending.pop()):
             if isinstance(node, Name) and node.name in meanings and node.name not in used:
                 used.add(node.name)
                 pending.append(meanings[node.name])

@@ -38,6 +38,7 @@ from symflex.expressions import (
     Quotient,
     Sum,
     format_expression,
+    is_longer,
     names,
     negative,
     nodes,
@@ -72,7 +73,7 @@ PI: Final = Name("pi")
 
 def shaped(model: Model, form: PrintedForm, signs: Signs | None = None) -> PrintedForm:
     """Return a form in the shape a person would give it; one too long to be read as it is."""
-    if sum(len(nodes(e)) for e in _parts(form)) > LARGEST:
+    if is_longer(_parts(form), LARGEST):
         return form
     form = _with_plain_lines(form)
     signs = (signs or Signs.of(model)).with_decays(form.where)
