@@ -28,6 +28,7 @@ from symflex.expressions.nodes import (
     Sum,
     fold,
     is_number,
+    names_in,
     negative,
     nodes,
     number,
@@ -60,7 +61,7 @@ AT_ZERO: Final = {
 
 
 def derivative(expression: Expression, leaf: Expression) -> Expression:
-    """Return the derivative by a leaf; ValueError has the part without one, ZeroDivisionError is raised.
+    """Return the derivative by what bears a name; ValueError has the part without one, ZeroDivisionError is raised.
 
     >>> from symflex.expressions import Name, format_expression, parse
     >>> from symflex.errors import Text
@@ -71,7 +72,7 @@ def derivative(expression: Expression, leaf: Expression) -> Expression:
     """
     if expression == leaf:
         return number(1)
-    if leaf not in nodes(expression):
+    if leaf not in names_in(expression):
         return number(0)
 
     def by(node: Expression) -> Expression:
@@ -85,7 +86,7 @@ def derivative(expression: Expression, leaf: Expression) -> Expression:
         case Product(factors):
             changed = ((*factors[:i], by(each), *factors[i + 1 :]) for i, each in enumerate(factors))
             return sum_of(map(product_of, changed))
-        case Quotient(above, below) if leaf not in nodes(below):
+        case Quotient(above, below) if leaf not in names_in(below):
             return quotient(by(above), below)
         case Quotient(above, below):
             top = [product_of([by(above), below]), negative(product_of([above, by(below)]))]

@@ -331,10 +331,12 @@ class _AboutRest:
         for equation in self.whole:
             for node in nodes(equation.left):
                 below = divisor(node)
+                if below is None and not isinstance(node, Call):
+                    continue
                 value = self.constants.here(node if below is None else below)
                 if below is not None and value is not None and value.contains(0):
                     message = f"'{format_expression(below)}' is zero at the operating point: division by zero"
-                elif below is None and isinstance(node, Call) and value is not None and not value.is_finite():
+                elif below is None and value is not None and not value.is_finite():
                     message = f"'{format_expression(node)}' has no value at the operating point"
                 else:
                     continue
