@@ -13,7 +13,7 @@ from symflex.errors import UsageError
 from symflex.expressions import Call, Name, format_expression, quotient
 from symflex.print import forms
 from symflex.print.forms import FORMS, hidden_expressions, print_form, with_hidden
-from symflex.print.forms.arrange import Arranged
+from symflex.print.forms.arranged import Arranged
 from symflex.print.forms.polynomial import factored_draft
 from symflex.print.forms.printed import forms_of
 from symflex.print.json_format import derive_json
