@@ -61,7 +61,9 @@ AT_ZERO: Final = {
 
 
 def derivative(expression: Expression, leaf: Expression) -> Expression:
-    """Return the derivative by what bears a name; ValueError has the part without one, ZeroDivisionError is raised.
+    """Return the derivative by a leaf with a name.
+
+    ValueError has the part without one, ZeroDivisionError is raised.
 
     >>> from symflex.expressions import Name, format_expression, parse
     >>> from symflex.errors import Text

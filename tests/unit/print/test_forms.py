@@ -957,3 +957,15 @@ def test_a_ladder_is_printed_of_sums_each_arranged_once():
     form = print_form(tf_of("\n".join([text, "[elements]", *parts]), "V", "U"))
     sums = [part for part in nodes(form.den) if isinstance(part, Sum)]
     assert len({id(part) for part in sums}) == len({*sums}) < len(sums) / 4
+
+
+def test_factors_of_a_long_product_stay_by_powers_of_s_also_with_sines_of_constants():
+    # A Butterworth filter of order 20, as Butterworth wrote it in 1930: ten quadratic factors.
+    factors = [f"s^2 + 2*sin({n}*pi/40)*w*s + w^2" for n in range(1, 20, 2)]
+    product = "*".join(f"({factor})" for factor in factors)
+    text = f'symflex = 1\nparameters.w = {{}}\ninputs.u = {{}}\noutputs.y = "w^20/({product})*u"\n'
+    form = print_form(tf_of(text, "y", "u"))
+    assert format_expression(form.num) == "w^20"
+    assert format_expression(form.den) == "*".join(
+        f"(s^2 + 2*w*sin({n if n > 1 else ''}{'*' * (n > 1)}pi/40)*s + w^2)" for n in range(1, 20, 2)
+    )
