@@ -43,19 +43,19 @@ Matrix = list[list[Factored]]
 Pair = tuple[int, int, int]  # numbers of a displacement and its force, and the sign of their work
 
 
-def fields_supply_nothing(model: Model, values: Mapping[str, ExactValue]) -> tuple[bool, bool]:
+def fields_supply_nothing(model: Model, values: Mapping[str, ExactValue]) -> tuple[bool, bool, Equations]:
     """Tell whether it is proved that nothing in a model of fields supplies energy but its inputs.
 
-    The second tells whether whatever moves loses energy: no pole lies on the imaginary axis but at 0.
-    ``values`` are those of the parameters. Nothing is known with elements, signals or blocks, or where the
-    equations of a field are of no such form as those above.
+    The second tells whether whatever moves in fields loses energy; with no elements, no pole lies on the
+    imaginary axis but at 0. The third are the equations. ``values`` are those of the parameters. Elements
+    have to be those of passive circuits, and sources that a field's end follows, as those of a line.
+    Nothing is known where the equations of a field are of no such form as those above.
     """
-    if model.elements or model.signals or model.blocks:
-        return False, False
     with precision(BITS):
-        fields = _Fields(assemble(replace(model, outputs=(), figures=(), published=()), is_cut=True), values)
+        equations = assemble(replace(model, outputs=(), figures=(), published=()), is_cut=True)
+        fields = _Fields(equations, values)
         is_passive = fields.are_passive()
-        return is_passive, is_passive and replace(fields, are_lossy=True).are_passive()
+        return is_passive, is_passive and replace(fields, are_lossy=True).are_passive(), equations
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +76,10 @@ class _Fields:
     are_lossy: bool = False  # only what is lost counts, not what is stored
 
     def are_passive(self) -> bool:
-        """Tell whether all fields and what holds their ends are passive."""
+        """Tell whether all fields and what holds their ends are passive, passive circuits included."""
+        acting = {v for field in self.equations.continua for v in field.loads}
+        if any(v.kind != "input" for v in acting):
+            return False
         if any(value.depends_on(LAPLACE) for _, value in self.equations.definitions):
             return False  # what hides s behind a name is not seen to depend on it
         pairs = [list(self._paired(field)) for field in self.equations.continua]
@@ -180,6 +183,13 @@ class _Fields:
                     work = a * b * (side * sign)
                     supplied[one, other] = supplied.get((one, other), work * 0) + work
         drawn = {both: -work for both, work in supplied.items() if not work.is_zero}
+        taken = self._taken(known)
+        if taken is None or not all(moved in slow for moved, _ in taken):
+            return False
+        for both, work in taken.items():
+            left = drawn.pop(both, work * 0) - work
+            if not left.is_zero:
+                return False
         if any((j, i) not in drawn or not (drawn[j, i] - work).is_zero for (i, j), work in drawn.items()):
             return False
         moved = list(dict.fromkeys(one for one, _ in drawn))
@@ -192,7 +202,7 @@ class _Fields:
     def _eliminated(self, forces: set[Variable]) -> dict[Variable, Terms] | None:
         """Return what conditions say of states by those that stay free; None with unstable divisors."""
         known: dict[Variable, Terms] = {}
-        for row in self.equations.rows:
+        for row in (row for row in self.equations.rows if row.role == "condition"):
             parts = free_terms(row.form, known)
             chosen = min(parts, key=lambda v: v not in forces, default=None)
             if chosen is not None:
@@ -202,6 +212,31 @@ class _Fields:
                 known[chosen] = {v: -c / own for v, c in parts.items()}
                 known = {v: put_in(c, known) for v, c in known.items()}
         return known
+
+    def _taken(self, known: Mapping[Variable, Terms]) -> dict[tuple[Variable, Variable], Factored] | None:
+        """Return what circuits take from fields, as products of a node's effort with a flow; None if unknown.
+
+        A balance is what flows out through elements, minus what sources deliver. It is zero, and so is the power
+        of the elements minus that of the sources.
+        """
+        flows: dict[Variable, Terms] = {}
+        for row in (row for row in self.equations.rows if row.role == "signal"):
+            parts = free_terms(row.form, known)
+            own = parts.pop(row.about, None)
+            if own is None or any(v.kind != "field" for v in parts):
+                return None
+            flows[row.about] = {v: -c / own for v, c in parts.items()}
+        taken: dict[tuple[Variable, Variable], Factored] = {}
+        for row in (row for row in self.equations.rows if row.role == "balance"):
+            for source, share in row.form.terms:
+                if source not in flows:
+                    continue
+                if not share.is_constant:
+                    return None
+                sign = 1 if share.unit > 0 else -1  # a balance is multiplied by what numbers have below
+                for flow, c in flows[source].items():
+                    taken[row.about, flow] = taken.get((row.about, flow), c * 0) - c * sign
+        return {both: work for both, work in taken.items() if not work.is_zero}
 
     def _ends(self, field: Continuum) -> list[tuple[int, Factored, Sequence[Variable | None]]]:
         """Return per end -1 where x begins and 1 where it ends, its place, and the states there."""

@@ -108,8 +108,8 @@ def energy_proof(
 
     ``values`` are put in place of those the parameters have; those named ``free``, such as a gain, may have
     any positive value. An ``output`` may have poles of its own, as ``x/(T*s + 1)`` has. Nothing is known with
-    loss factors, parameters that depend on s, elements that are not of this program, fields beside elements
-    or signals, or a value of the wrong sign.
+    loss factors, parameters that depend on s, elements that are not of this program, fields beside signals or
+    elements but those of circuits, or a value of the wrong sign.
     """
     if model.imaginary:
         return EnergyProof()
@@ -118,13 +118,25 @@ def energy_proof(
     declared = (replace(p, value=None, assume="positive") if p.name in free else p for p in model.parameters)
     seen = () if output is None else (output,)
     model = replace(_with_signals_of(model, seen), parameters=tuple(declared))
-    if model.fields:
-        is_passive, rests = fields_supply_nothing(model, known)
-        return EnergyProof(PASSIVE, rests) if is_passive else EnergyProof()
     line, inputs = line_of(model, known.items()), {each.name for each in model.inputs}
     sources = [e for e in model.elements if e.element.is_source and not follows_inputs(e, line, inputs)]
     rest = [e for e in model.elements if e not in sources]
     signs = {e.name: parameter_signs(e, line) for e in rest}
+    gain = free[0] if len(free) == 1 else ""
+    if model.fields:
+        domains = {domain for e in model.elements for _, domain in e.domains}
+        if (
+            model.signals
+            or model.blocks
+            or not domains.issubset(CIRCUITS)
+            or not all(isinstance(e.element, ThroughSource) for e in sources)
+            or not all(e.element.is_source or _supplies_nothing(e, line, signs[e.name]) for e in rest)
+        ):
+            return EnergyProof()
+        is_passive, are_lossy, equations = fields_supply_nothing(model, known)
+        structure = _Structure(equations, rest, signs, gain, line, known, ())
+        rests = is_passive and (structure.rests_with_fields(are_lossy) if model.elements else are_lossy)
+        return EnergyProof(PASSIVE, rests) if is_passive else EnergyProof()
     pressed = [e for e in rest if isinstance(e.element, Beam) and signs[e.name].get("N") == -1]
     for use in pressed:  # as if pulled: the same rests on the axis, as far as its proof needs no sign
         signs[use.name]["N"] = 1
@@ -143,7 +155,6 @@ def energy_proof(
         for e in rest
     )
     equations, places = _with_signals_for(replace(model, elements=pulled), sources)
-    gain = free[0] if len(free) == 1 else ""
     structure = _Structure(equations, pulled, signs, gain, line, known, {use.name for use in pressed})
     closed = structure.closed_at(places)
     if closed is None:
@@ -345,12 +356,24 @@ class _Structure:
         }
         return None if None in losses else _Feedback(is_moved, True in losses, None)
 
-    def _rests(self, damped: Sequence[Ends]) -> bool:
+    def rests_with_fields(self, are_lossy: bool) -> bool:
+        """Tell the same of fields beside circuits: a field rests if all states at one of its ends do."""
+        fields = [f for f in self.equations.continua if None not in f.initial]
+        ends = [(f.initial, tuple(v for v, _ in f.final)) for f in fields]
+        lossy = {v for here in chain(*ends) for v in here if v is not None and are_lossy}
+        return self._rests((), [(both, len(both[0])) for both in ends], lossy)
+
+    def _rests(
+        self,
+        damped: Sequence[Ends],
+        fields: Iterable[tuple[tuple[Ends, Ends], int]] = (),
+        lossy: Iterable[Variable] = (),
+    ) -> bool:
         """Tell whether everything rests where what is damped does, at any frequency of the axis."""
         one = Factored.number(self.equations.ring, 1)
         damped = list(damped)
-        resting: set[Variable] = set()
-        members: list[tuple[tuple[Ends, Ends], int]] = []  # and how much of an end, at rest, stops them
+        resting = set(lossy)
+        members = list(fields)  # with how much of an end, at rest, stops them
         beams: list[tuple[Ends, Ends]] = []
         for use in self.rest:
             given, law = self.signs[use.name], use.element.damping

@@ -702,6 +702,61 @@ def test_lossy_lines_are_passive_with_what_ends_them():
         )
 
 
+NETWORK = """symflex = 1
+parameters = {{ R = 50, Z = 75, T = "1 us", C = "1 nF", L = "1 uH" }}
+[inputs]
+V = {{ voltage = "in" }}
+[outputs]
+v = "b"
+[elements]
+R_1 = {{ type = "resistor", between = ["in", "a"], R = "R" }}
+at_a = {{ type = "current_source", between = ["{a}"], i = "{i}(0)" }}
+at_b = {{ type = "current_source", between = ["b", "ground"], i = "i(1)" }}
+{end}
+[fields.line]
+unknowns = ["v", "i"]
+domain = ["0", "1"]
+equations = ["v' = -{z}*s*T*i", "i' = -s*T/Z*v"]
+conditions = ["v(0) = {v}", "v(1) = b"]
+"""
+AS_LINE = {"a": 'ground", "a', "i": "i", "v": "a", "z": "Z"}
+RESISTOR, CAPACITOR, TANK = (
+    'end = {{ type = "{}", between = ["b", "ground"], {} }}'.format(*each)
+    for each in (
+        ("resistor", 'R = "2*R"'),
+        ("capacitor", 'C = "C"'),
+        ("resistor", 'R = "R" }\nl = { type = "inductor", between = ["b", "c"], L = "L" }\n'
+         'c = { type = "capacitor", between = ["c", "ground"], C = 3e-9'),
+    )
+)  # fmt: skip
+
+
+def test_lines_between_the_nodes_of_passive_circuits_are_passive():
+    # At an end of impedance R the reflection is (R - Z)/(R + Z), and s = ln(r_1*r_2)/(2*T) a pole: it grows
+    # if both reflections together exceed one, as where a source drives the line instead of following it.
+    for changes, end, expected in (
+        ({}, RESISTOR, (True, True)),
+        ({}, CAPACITOR, (True, True)),
+        ({}, TANK, (True, True)),
+        ({}, RESISTOR.replace("2*R", "-2*R"), (False, False)),
+        ({"a": 'a", "ground'}, RESISTOR, (False, False)),
+        ({"v": "2*a"}, RESISTOR, (False, False)),
+        ({"v": "2*a", "i": "2*i"}, RESISTOR, (True, True)),
+        ({"i": "3*v"}, RESISTOR, (False, False)),
+        ({"z": "(1 - 2*s*T)*Z"}, RESISTOR, (False, False)),
+        ({}, RESISTOR + '\nf = { type = "current_source", at = "b", i = "a/R" }', (False, False)),
+    ):
+        proof = energy_proof(pipeline.loads(NETWORK.format(**AS_LINE | changes, end=end)))
+        assert (proof.is_passive, proof.rests) == expected, (changes, end)
+
+
+def test_a_line_between_undamped_circuits_is_passive_and_may_ring():
+    undamped = NETWORK.replace('between = ["in", "a"], R = "R"', 'between = ["in", "a"], L = "L"')
+    undamped = undamped.replace('type = "resistor", between = ["in"', 'type = "inductor", between = ["in"')
+    proof = energy_proof(pipeline.loads(undamped.format(**AS_LINE, end=CAPACITOR)))
+    assert (proof.is_passive, proof.rests) == (True, False)
+
+
 def test_fields_rest_on_the_axis_where_what_moves_them_loses_energy():
     # EI (1 + eta s) w'''' = -rhoA s^2 w has s^2 + eta p s + p = 0 with p > 0; without eta s^2 = -p.
     for law, expected in [("(1 + eta*s)*EI", True), ("EI", False)]:
