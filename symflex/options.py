@@ -30,6 +30,7 @@ Ends = tuple[Stated, Stated]
 Places = Sequence[str | Path]
 T = TypeVar("T")
 
+POINTS: Final = 201  # number of points of a response in time if no times are given
 FREQUENCIES: Final = 200  # default number of frequencies of a swept response
 UNBOUNDED: Final = ("inf", "-inf", "+inf")
 
@@ -304,7 +305,7 @@ class RespondOptions:
         "--points",
         least=2,
         most=1_000_000,
-        help="Number of times, evenly spaced from 0.  [default: 201, or the times of a file]",
+        help=f"Number of times, evenly spaced from 0.  [default: {POINTS}, or the times of a file]",
     )
     digits: int = option(
         12, "--digits", least=1, most=1000, **SHOWN, help="Correct digits of the largest value."

@@ -21,6 +21,7 @@ from dataclasses import dataclass
 
 from flint import acb, arb
 
+from symflex.analysis.time_response.step_info import TEXT_DIGITS
 from symflex.balls import bits_for_digits, precision
 from symflex.errors import Diagnostic, ModelError, counted, no_such, refused
 from symflex.model.loss_factors import check_causal
@@ -36,7 +37,6 @@ TOLERANCE = 0.05  # residual vibration V that an EI shaper allows: the usual one
 MORE_DIGITS = 24  # digits of poles beyond those printed: responses to long inputs lose a few
 MORE_MODES = 8  # searched beyond those asked for, as some may not oscillate
 MOST_IMPULSES = 2187  # most impulses: those of seven modes with three each
-TEXT_DIGITS = 10
 LEAST = 1e-300  # the smallest bound that is printed
 
 

@@ -399,7 +399,7 @@ def evaluate(bound: AnyBoundFunction, omega: npt.NDArray[np.float64]) -> npt.NDA
 
 
 REFINED_DAMPING = 0.3
-AXIS_GAP = 1e-7
+AXIS_GAP = 1e-7  # distance kept from poles on the imaginary axis, relative to theirs from 0
 PHASE_STEPS = 24
 WIDEST_ANGLE = 0.94 * pi / 2
 POINTS_PER_DECADE = 6

@@ -26,7 +26,7 @@ from symflex.api.root import (
 from symflex.budget import Budget, entered_budget
 from symflex.errors import refused
 from symflex.letters.frequency_equation import roots_in_letters
-from symflex.options import Ends, RootsOptions, band_ends, checked_digits, duration
+from symflex.options import POINTS, Ends, RootsOptions, band_ends, checked_digits, duration
 from symflex.print.sympy import symbols_of
 from symflex.roots.locate import locate
 from symflex.roots.region import region_of
@@ -43,8 +43,6 @@ if TYPE_CHECKING:
     from symflex.loops.clouds import RootCloud
     from symflex.loops.peak import Peak
     from symflex.transfer.nested_form import AnyTransferFunction
-
-POINTS = 201  # number of points of a response in time if no times are given
 
 
 class Analyses(Plotted):

@@ -56,7 +56,6 @@ if TYPE_CHECKING:
     from symflex.options import Ends
 
 Table = Mapping[str, object]
-LARGEST_DRAWING = 60  # elements of a model that a notebook draws
 
 
 @dataclass(frozen=True, init=False)
@@ -174,7 +173,7 @@ class Model:
         return repr(self.resolved)
 
     def _repr_html_(self) -> str:
-        from symflex.drawing import drawing_of, render_drawing  # only notebooks ask
+        from symflex.drawing import LARGEST_DRAWING, drawing_of, render_drawing  # only notebooks ask
         from symflex.print.html import model_html
 
         if len(self.resolved.elements) > LARGEST_DRAWING:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from symflex.api.model import Model, Table
 from symflex.errors import nearest, refused
+from symflex.model.reading import SHOWN
 from symflex.model.scope import RESERVED
 
 if TYPE_CHECKING:
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 Quotient = tuple[object, object]
 TUPLES = {2: ("num", "den"), 3: ("zeros", "poles", "gain"), 4: "ABCD"}
 """What the members of a tuple are by their number, as scipy reads it."""
-SHOWN = 40  # characters of a value that a message repeats
 
 
 def from_control(sys: object) -> Model:

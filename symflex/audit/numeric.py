@@ -16,13 +16,13 @@ from symflex.audit.reading import Formula
 from symflex.balls import ball, precision, precisions
 from symflex.expressions import Expression
 from symflex.model import ExactValue, Model
+from symflex.print.forms.zpk import BITS_PER_DIGIT
 from symflex.transfer import BoundTransferFunction, TransferFunction, bind
 from symflex.transfer.enclose import principal_values
 from symflex.transfer.probes import probes_of
 
 POINTS = 40
 DIGITS = 50  # printed and derived function agree when they do to so many digits, at so many points
-BITS_PER_DIGIT = 4
 FIRST_BITS = 256
 LAST_BITS = 8192
 DOUBLE_BITS = 53

@@ -13,7 +13,7 @@ from symflex.cli.command import Specification, command_of, first_pair
 from symflex.cli.reporting import PICTURES, answer, check_place, emit_json, note, say, write
 from symflex.errors import Diagnostic, UncertifiedError, refused
 from symflex.model import read_settings
-from symflex.options import PeakOptions, RespondOptions, ShapeOptions, axis_ends, duration
+from symflex.options import POINTS, PeakOptions, RespondOptions, ShapeOptions, axis_ends, duration
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from symflex.data.measurement.input_signal import InputSignal
     from symflex.roots import PoleZeroMap
 
-POINTS = 201
 TABLE = ".csv"
 
 

@@ -19,6 +19,7 @@ from symflex.algebra import irreducible_factors
 from symflex.codegen.export import Export, shortfalls
 from symflex.codegen.module_text import default_value, identifiers, inert, wrapped
 from symflex.codegen.program import nodes as tree
+from symflex.codegen.program.build import TERM_LIMIT
 from symflex.codegen.program.evaluate import evaluate
 from symflex.codegen.program.verify import DEFAULT_BAND, Verification, double_of, measure_values
 from symflex.codegen.python.dialects import NUMPY_DIALECT
@@ -121,7 +122,6 @@ class StateEquations:
         return tuple(self._arranger.coefficient(factor) for factor in factors.values())
 
 
-TERM_LIMIT = 20_000  # terms of all entries together; beyond that the text would be megabytes
 EQUATION_LINES = 60  # lines of equations in the docstring
 WORK, FEWEST = 400 * 12**3, 20  # frequencies times order cubed, at most, and fewest frequencies measured
 

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
 __all__ = ["Drawing", "Extent", "Placed", "draw_model", "drawing_of", "render_drawing"]
 LEGEND: Final = 230.0  # width of the lines of values below a drawing [points]
 ROUND: Final = 0.3  # where wires leave a round body, as a share of its radius: it is still as wide there
+LARGEST_DRAWING: Final = 60  # elements of a model that is drawn on a page or in a notebook
 MOST_WIRES: Final = 2  # dashed wires between signals and the model
 SMALLEST: Final = 0.8  # how far symbols and type are made smaller before the page is made wider
 SMALLEST_ASKED: Final = 0.6  # the same, before a width that was asked for is refused: type of 4.8 points

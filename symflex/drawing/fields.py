@@ -45,6 +45,7 @@ from symflex.expressions import (
     replace_values,
     sum_of,
 )
+from symflex.library.fields import BEAM_ORDER
 from symflex.model import FieldProblem, Model
 from symflex.model.along import COORDINATE, is_tapered
 from symflex.quantities import unit_of
@@ -55,7 +56,6 @@ LEADING: Final = 3.0
 APART: Final = 14.0  # least distance of two columns of conditions [points]
 OF_BEAMS: Final[dict[int, Style]] = {1: "twist", 2: "torque"}
 """What is driven at an end of a beam, by the order in x of what it rules there: a slope, a moment."""
-BENDING: Final = 4  # order in x of a beam's equation
 STRING: Final = (0.0,)  # depths of a string, a line without any
 STIFF_SECTIONS: Final = {unit_of(unit).dimension for unit in ("Pa", "N*m^2")}
 """Dimensions of a modulus, and of what resists bending or torsion."""
@@ -207,7 +207,7 @@ class _Row:
 
     @staticmethod
     def _is_beam(one: FieldProblem) -> bool:
-        return any(n.order >= BENDING for e in one.equations for n in _derivatives(e))
+        return any(n.order >= BEAM_ORDER for e in one.equations for n in _derivatives(e))
 
     def _is_string(self, one: FieldProblem) -> bool:
         """Whether a tension alone holds a field: neither a modulus nor what resists bending or torsion."""

@@ -35,6 +35,7 @@ from symflex.figures.style import (
 )
 from symflex.model import Model
 from symflex.roots import Band
+from symflex.roots.locate import DEFAULT_MODES
 from symflex.transfer import AnyBoundFunction
 
 if TYPE_CHECKING:
@@ -43,7 +44,6 @@ if TYPE_CHECKING:
     Points = npt.NDArray[np.float64]
     Amplitudes = npt.NDArray[np.complex128]
 
-DEFAULT_MODES: Final = 5
 MODES_LIMIT: Final = 40
 ROW_INCHES, PLAN_INCHES, HEADING_INCHES, AXIS_INCHES, LEGEND_INCHES = 0.56, 1.5, 0.17, 0.38, 0.06
 LEFT, RIGHT = 0.46, 0.08

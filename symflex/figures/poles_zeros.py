@@ -14,6 +14,7 @@ from matplotlib.patches import Rectangle
 
 from symflex.figures.axes import FREE, Canvas, draw_points, draw_zero_lines, root_figure, set_round_ticks
 from symflex.figures.figure import new_figure
+from symflex.figures.modes import PANELS_IN_COLUMN
 from symflex.figures.s_plane import (
     GLYPHS,
     POINTS_PER_INCH,
@@ -49,7 +50,6 @@ if TYPE_CHECKING:
     Roots = tuple[Sequence[RootMark], Sequence[RootCloud]]
 
 
-PANELS_IN_COLUMN: Final = 3
 PANELS_ON_PAGE: Final = 4
 LEFT, RIGHT, BOTTOM, TOP, GAP = 0.54, 0.15, 0.38, 0.20, 0.24
 NARROWEST, WIDEST = 0.6, 1.25

@@ -228,6 +228,7 @@ def timoshenko(s: Factored, values: Mapping[str, Factored]) -> FieldSystem:
 
 
 BENDING = ("euler-bernoulli", "rayleigh", "timoshenko")
+BEAM_ORDER = 4  # in x, of the equation of a beam that bends
 FRAME_STATES = ("u", "v", "theta", "f_u", "f_v", "tau")
 VECTORS = ((0, 1), (3, 4))  # the pairs of states of a member of a frame that turn with the axes
 

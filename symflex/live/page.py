@@ -27,7 +27,7 @@ from symflex import pipeline
 from symflex.codegen.export import Contents, Member
 from symflex.codegen.javascript import JAVASCRIPT, RESERVED, javascript_module
 from symflex.codegen.program.evaluate import nearest_double
-from symflex.drawing import drawing_of, render_drawing
+from symflex.drawing import LARGEST_DRAWING, drawing_of, render_drawing
 from symflex.errors import SymflexError
 from symflex.figures.files import inline_svg
 from symflex.letters.routh import Signs
@@ -44,7 +44,6 @@ from symflex.roots.pole_zero_map import chosen, right_beyond
 SCRIPTS: Final = ("discs.js", "roots.js", "page.js")  # files of the script, in their order
 FACTOR: Final = 10
 """A slider without a ``range`` goes from the declared value over this to the declared value times this."""
-LARGEST_DRAWING: Final = 60  # elements of a model that is drawn
 LONGEST_FORMULA: Final = 60_000  # characters of MathML that a page shows: some forty lines
 SHOWN: Final = 0.6  # how large a drawing is beside the formula, as a share of its size in a report
 MAX_WIDTH: Final = re.compile(r' style="max-width:([0-9.]+)in"')

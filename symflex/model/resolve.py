@@ -161,7 +161,7 @@ Sections = Mapping[str, TableValue | None]
 
 
 def _read_draft(reader: Reader, spec: Spec, sections: Sections, origin: Origin) -> Draft:
-    """Return what sections say, but for equations of motion and fields."""
+    """Return what is declared in sections, without equations of motion and fields."""
     declared = read_parameters(reader, sections["parameters"], sections["definitions"])
     declared = settled(reader, declared, origin.loads.settings)
     definitions = read_definitions(reader, sections["definitions"])

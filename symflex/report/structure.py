@@ -34,12 +34,12 @@ from symflex.expressions import (
     names,
     product_of,
 )
+from symflex.library.fields import BEAM_ORDER
 from symflex.model import Input, Model, ModelParameter, Output, PlacedElement, with_numbers
 from symflex.print.forms.naming import names_of
 
 Place = Literal["base", "transmission", "link", "contact"]
 PLACES: Final[tuple[Place, ...]] = ("base", "transmission", "link", "contact")
-BENDING_ORDER: Final = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +64,7 @@ def compliances(model: Model) -> tuple[Compliance, ...]:
             compliant.append(Compliance(use.name, is_bending, place))
     for field in model.fields:
         orders = [n.order for e in field.equations for n in names(e) if isinstance(n, Derivative)]
-        is_bending = max(orders, default=0) >= BENDING_ORDER or len(field.unknowns) > 1
+        is_bending = max(orders, default=0) >= BEAM_ORDER or len(field.unknowns) > 1
         compliant.append(Compliance(field.name, is_bending, _place(is_bending, is_grounded=False)))
     return tuple(compliant)
 

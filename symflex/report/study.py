@@ -26,6 +26,7 @@ from symflex.options import ColocationOptions
 from symflex.print.forms import PrintedForm, print_forms
 from symflex.report.structure import Counts, RigidCounts, rigid_counts, undamped_counts
 from symflex.roots import PoleZeroMap
+from symflex.roots.locate import DEFAULT_MODES
 from symflex.transfer import AnyBoundFunction, AnyTransferFunction, TransferFunction
 
 if TYPE_CHECKING:
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
 
 MOST_FUNCTIONS: Final = 24  # functions of a model that a report shows; the number left out is said
 DIGITS: Final = 15
-MODES: Final = 5
 TOO_LARGE: Final = "the closed form is too large"
 ONLY_ON_AXIS: Final = "loss factors hold on s = j*omega alone"
 COMPLEX: Final = "coefficients are complex"
@@ -237,7 +237,7 @@ class Study:
         bound = next(b for b in self.bounds if b.name == tf.name)
         if not bound.is_reduced:
             return None
-        modes = self.model.analysis.modes or MODES
+        modes = self.model.analysis.modes or DEFAULT_MODES
         approximation = attempt(lambda: approximate(bound, modes))
         return None if isinstance(approximation, SymflexError) else approximation
 

@@ -18,7 +18,6 @@ from symflex.errors import Diagnostic, ModelError
 from symflex.state_space.numeric import Arrays
 
 BITS = 256
-PAIR = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +51,7 @@ class _Section:
 
     def output(self) -> list[mpmath.mpf]:
         left = [self.num[i] - self.direct * self.den[i] for i in range(self.order)]
-        return left if self.order < PAIR else [left[0] / self.scale, left[1]]
+        return left if self.order == 1 else [left[0] / self.scale, left[1]]
 
 
 def cascade(zeros: Sequence[mpmath.mpc], poles: Sequence[mpmath.mpc], gain: mpmath.mpf, name: str) -> Arrays:
@@ -132,4 +131,4 @@ def _pairs(roots: Sequence[mpmath.mpc]) -> tuple[list[tuple[mpmath.mpf, ...]], t
 
 def _size(polynomial: tuple[mpmath.mpf, ...]) -> mpmath.mpf:
     """Return the natural frequency of a monic polynomial [rad/s]."""
-    return abs(polynomial[0]) if len(polynomial) < PAIR else mpmath.sqrt(abs(polynomial[0]))
+    return abs(polynomial[0]) if len(polynomial) == 1 else mpmath.sqrt(abs(polynomial[0]))

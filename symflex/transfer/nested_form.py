@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     from symflex.equations.line_network import LineNetwork
     from symflex.transfer.equations_at import EquationsAt
 
-CONSTANT_BITS = 256
+CONSTANT_BITS = 256  # precision of powers of pi before they are rounded to a double
 
 
 @dataclass(frozen=True, eq=False)

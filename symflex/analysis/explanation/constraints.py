@@ -25,7 +25,6 @@ from symflex.model import FieldProblem, Input, Model, NodeReference, PlacedEleme
 from symflex.model.model import INPUT_KINDS
 
 HOLD = "hold"
-PAIR = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +54,7 @@ def hold(model: Model, coordinates: Coordinates) -> Constraint:
     """
     taken = {use.name for use in model.elements}
     name = next(n for n in (HOLD, *(f"{HOLD}_{i}" for i in range(2, len(taken) + 3))) if n not in taken)
-    if len(coordinates) == PAIR:
+    if len(coordinates) > 1:
         (first, _), (second, _) = coordinates
         references = {"from": _reference(first), "to": _reference(second)}
         placed = PlacedElement(

@@ -20,6 +20,7 @@ from symflex.expressions import Call, Derivative, Equation, Name, format_express
 from symflex.library.elements import COMPONENTS, LineElement, Variable
 from symflex.library.elements.line import Beam
 from symflex.library.elements.rigid import MasslessBeam
+from symflex.library.fields import BEAM_ORDER
 from symflex.model import FieldProblem, Input, Model, NodeReference, Output, PlacedElement
 
 BENDING = {(True, True): "clamped", (True, False): "pinned", (False, True): "sliding", (False, False): "free"}
@@ -28,7 +29,6 @@ BY_ORDERS: dict[int, dict[tuple[int, ...], str]] = {
     4: {(0, 1): "clamped", (0, 2): "pinned", (1, 3): "sliding", (2, 3): "free"},
     2: {(0,): "held", (1,): "free"},
 }  # names by the derivatives that vanish there, for an equation of that order in x
-PAIR = 2
 
 
 def is_line(use: PlacedElement) -> bool:
@@ -97,7 +97,7 @@ def ends_of_field(field: FieldProblem) -> str:
             return ""
         at[str(place)].append(call.order)
     words = [None if known is None else known.get(tuple(sorted(orders))) for orders in at.values()]
-    if len(at) != PAIR or any(word is None for word in words):
+    if len(at) == 1 or any(word is None for word in words):
         return ""
     return ", ".join(f"{word} at x = {place}" for word, place in zip(words, at, strict=True))
 
@@ -113,9 +113,6 @@ def _single(condition: Equation, unknown: str) -> Call | None:
     plain = is_number(other, 0)
     read = names(other)
     return own[0] if plain or (len(read) == 1 and isinstance(read[0], Name)) else None
-
-
-BENDING_ORDER = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,7 +193,7 @@ def _field_between(model: Model, equations: Equations, output: Output, source: I
             if isinstance(n, Call) and n.name in field.unknowns
         ]
         places = [{format_expression(call.argument) for call in calls} for calls in (shown, loaded)]
-        is_beam = len(field.unknowns) == 1 and order == BENDING_ORDER
+        is_beam = len(field.unknowns) == 1 and order == BEAM_ORDER
         if is_beam and all(places) and places[0].isdisjoint(places[1]):
             return Bending(field.name, False, _is_evanescent(equations))
     return None

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from symflex.print.notebook import Printed
-from symflex.print.text import Passage
+from symflex.print.roots import SHORT_DIGITS
+from symflex.print.text import WIDTH, Passage
 
 if TYPE_CHECKING:
     from symflex.analysis.explanation.ends import Bending
@@ -18,9 +19,7 @@ if TYPE_CHECKING:
 Kind = Literal["colocated", "beyond", "partly", "noncolocated", "open circuit", "free", "zero"]
 Status = Literal["proved", "almost surely", "not shown"]
 
-WIDTH = 80
 INDENT = "  "
-DIGITS = 6
 LISTED = 6  # parts, and real zeros, that are listed one by one
 NAMES = 8
 CONTEXT = {
@@ -160,7 +159,8 @@ class ZeroExplanation(Printed):
             "ends": [{"name": e.name, "before": e.before, "after": e.after} for e in self.ends],
             "right_half_plane": self.right_half_plane,
             "real_zeros": [
-                {"re": zero.root.decimal(DIGITS).re, "paired": zero.is_paired} for zero in self.real_zeros
+                {"re": zero.root.decimal(SHORT_DIGITS).re, "paired": zero.is_paired}
+                for zero in self.real_zeros
             ],
             "on_imaginary_axis": self.on_axis,
             "beam_between": None
@@ -349,7 +349,7 @@ def _real_values(explained: ZeroExplanation) -> str:
         return ""
     said = []
     for lead, sign, is_paired in (("in pairs", "+-", True), ("at", "+", False)):
-        values = [sign + z.root.decimal(DIGITS).re for z in real if z.is_paired == is_paired]
+        values = [sign + z.root.decimal(SHORT_DIGITS).re for z in real if z.is_paired == is_paired]
         more = f" and {len(values) - LISTED} more" if len(values) > LISTED else ""
         said += [f"real zeros {lead} {', '.join(values[:LISTED])}{more}"] if values else []
     return ", " + "; ".join(said)

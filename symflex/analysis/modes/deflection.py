@@ -13,6 +13,7 @@ from fractions import Fraction
 from flint import acb, arb
 
 from symflex.analysis.modes.bound_equations import BoundEquations, solution
+from symflex.analysis.modes.find import DIGITS
 from symflex.analysis.modes.shape import Deflection, is_accurate, normalised
 from symflex.balls import precision, precisions
 from symflex.budget import spend
@@ -22,7 +23,6 @@ from symflex.model.loss_factors import check_causal
 from symflex.model.model import PI_NEARLY
 from symflex.transfer import AnyBoundFunction
 
-DIGITS = 15
 SHORT = 10**20  # PI_NEARLY has a denominator of 10^29
 FIRST_BITS, MOST_BITS = 128, 2048  # the last is asked for at a resonance without damping alone
 

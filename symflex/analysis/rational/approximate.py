@@ -21,7 +21,7 @@ from symflex.analysis.rational.approximation import (
     scan_error,
 )
 from symflex.analysis.rational.laurent import about_zero, expand_at_zero, residues_at
-from symflex.analysis.rational.toolboxes import check_form
+from symflex.analysis.rational.toolboxes import DIGITS, check_form
 from symflex.analysis.response import check_band, default_band
 from symflex.balls import current_bits, precision, to_complex_mpmath, to_mpmath
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, refused
@@ -37,7 +37,7 @@ from symflex.roots import (
     find_polynomial_roots,
 )
 from symflex.roots.functions.simplified import without_lengths_of_zero
-from symflex.roots.locate import as_quotient, locate
+from symflex.roots.locate import DEFAULT_MODES, as_quotient, locate
 from symflex.roots.pole_zero_map import is_right
 from symflex.roots.root import count_roots, exact_fraction, modes_of
 from symflex.transfer import AnyBoundFunction, EnclosedTransferFunction
@@ -123,8 +123,6 @@ def _no_more_than(zeros: Sequence[Root], poles: int) -> tuple[Root, ...]:
     return tuple(kept)
 
 
-DEFAULT_MODES = 5
-DIGITS = 30  # digits of roots and residues: twice what a double holds
 SCANNED_DECADES = 3  # the error is sampled from a thousandth of the lowest natural frequency on
 
 

@@ -20,12 +20,12 @@ import mpmath
 import numpy as np
 
 from symflex.analysis.rational.toolboxes import PERCENTS, RationalFunction, end_units
-from symflex.analysis.response import adaptive_grid
+from symflex.analysis.response import AXIS_GAP, adaptive_grid
 from symflex.balls import to_complex_mpmath
 from symflex.errors import Diagnostic, ModelError
 from symflex.errors.optional import installed
 from symflex.print.notebook import Printed
-from symflex.print.text import Passage
+from symflex.print.text import WIDTH, Passage
 from symflex.roots import PoleZeroMap, Root
 from symflex.roots.pole_zero_map import NOT_EXAMINED, StabilityVerdict
 from symflex.state_space import Channel
@@ -41,7 +41,6 @@ if TYPE_CHECKING:
 
 
 DIP = 0.1  # distance from a zero, relative to its distance from 0, within which its dip is filled
-AXIS_GAP = 1e-7  # distance kept from poles on the imaginary axis, relative to theirs from 0
 POINTS = 400
 BISECTIONS = 60  # more than a double has bits
 
@@ -460,7 +459,6 @@ SCHEMA = "symflex.rational/1"
 INDENT = "  "
 ESTIMATE = "some poles or zeros could not be separated, or are not proved"
 DIGITS = 10
-WIDTH = 80  # columns of a terminal
 SHOWN_DIPS = 3  # antiresonances that are named
 JSON_DIGITS = 17  # so many give a double back exactly
 

@@ -10,6 +10,8 @@ import sympy
 from flint import arb
 
 from symflex.balls import precision
+from symflex.print.roots import SHORT_DIGITS
+from symflex.print.text import WIDTH
 from symflex.roots import Root
 from symflex.roots.root import NEARLY_ZERO, decimals, figure
 
@@ -17,8 +19,6 @@ if TYPE_CHECKING:
     from symflex.analysis.sensitivity import RootDerivative
 
 
-WIDTH = 80
-DIGITS = 6
 INDENT = "    "
 HEAD = ("Re [rad/s]", "Im [rad/s]", "p", "(p/f) df/dp")
 TITLES = {"pole": "  sensitivity of poles", "zero": "  sensitivity of zeros"}
@@ -49,7 +49,7 @@ def _table(moved: Sequence[RootDerivative], width: int) -> list[str]:
     damping = "p dzeta/dp" if all(m.root.loss_factor() is None for m in moved) else "p deta/dp"
     rows: list[tuple[str, ...]] = [(*HEAD, damping)]
     roots = {m.index: m.root for m in moved}
-    printed = {i: decimals(r.re, r.im, DIGITS).readable for i, r in roots.items()}
+    printed = {i: decimals(r.re, r.im, SHORT_DIGITS).readable for i, r in roots.items()}
     places = {(p.re, p.im) for p in printed.values()}
     for index, group in groupby(moved, key=lambda m: m.index):
         re, im = printed[index].re, printed[index].im
@@ -95,7 +95,7 @@ def _row(derivative: RootDerivative) -> tuple[str, ...]:
     rate, damping = derivative.rate, derivative.damping_ratio
     damping = derivative.loss_factor if damping is None else damping
     if rate is None:
-        slope = decimals(derivative.derivative.real, derivative.derivative.imag, DIGITS).readable
+        slope = decimals(derivative.derivative.real, derivative.derivative.imag, SHORT_DIGITS).readable
         shown = slope.re if slope.im == "0" else f"{slope.re} + ({slope.im}) j"
         return (f"{name}: ds/dp = {shown}",)
     if _is_zero(derivative):
@@ -108,7 +108,7 @@ def _row(derivative: RootDerivative) -> tuple[str, ...]:
 
 
 def _number(value: arb) -> str:
-    return NEARLY_ZERO if value.contains(0) and not value.is_zero() else figure(value, DIGITS)
+    return NEARLY_ZERO if value.contains(0) and not value.is_zero() else figure(value, SHORT_DIGITS)
 
 
 def _is_zero(derivative: RootDerivative) -> bool:

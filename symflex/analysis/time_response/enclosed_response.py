@@ -13,6 +13,7 @@ from flint import arb
 
 from symflex.analysis.time_response.sampled import ImpulseAt, JumpAt, PartialSum
 from symflex.errors import Diagnostic, UsageError
+from symflex.print.roots import SHORT_DIGITS
 from symflex.print.text import aligned, broken
 from symflex.roots.root import RootDecimals, decimals, figure
 
@@ -25,7 +26,6 @@ LARGEST_POWER = 100_000
 LARGEST = arb(10) ** LARGEST_POWER  # what is beyond is refused: its decimals take minutes
 SHORTER = "ask for a shorter time"
 ROWS = 21  # rows of the table; all points are in the JSON and in files
-SHORT_DIGITS = 6
 NARROWEST = 99  # digits to which a radius in the table goes, or those asked for: 1e-2913 is below 1e-99
 IMPULSES = ("an impulse", "the derivative of an impulse")
 

@@ -22,12 +22,11 @@ from symflex.along.doubles import fundamental_minors
 from symflex.balls import ball, precision
 from symflex.codegen.program import nodes as tree
 from symflex.errors import Diagnostic, ModelError
+from symflex.transfer.nested_form import CONSTANT_BITS
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-
-CONSTANT_BITS = 256  # precision of powers of pi before they are rounded to a double
 
 NUMPY_FUNCTIONS = {  # what numpy calls each of the elementary functions, and the magnitude
     name: name for name in ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh", "atan", "abs")

@@ -23,6 +23,7 @@ from flint import fmpz_mpoly
 
 from symflex.algebra import Ring, irreducible_factors
 from symflex.errors import BudgetError, Diagnostic
+from symflex.print.forms.arrange import FACTOR_LIMIT
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -110,7 +111,6 @@ def _nest(forge: Forge, terms: Mapping[Monomial, int], values: Sequence[int]) ->
     return forge.multiply([*outside, forge.add(summands)])
 
 
-FACTOR_LIMIT = 400  # number of terms up to which a polynomial is factored
 WORK_LIMIT, DEPTH_LIMIT = 300_000_000, 150
 """Exponents looked at before the search for structure is given up, about two seconds, and splits inside one
 another: a polynomial of so high a degree is better nested by powers of s."""

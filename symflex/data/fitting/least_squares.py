@@ -31,6 +31,7 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from symflex.budget import spend
+from symflex.data.fitting.lines import CAP
 from symflex.data.fitting.observation import FittedLines, score_covariance
 from symflex.data.fitting.problem import FitProblem
 from symflex.data.fitting.resonances import Complex, Real, Resonances, Values, Whole
@@ -38,7 +39,6 @@ from symflex.data.fitting.resonances import Complex, Real, Resonances, Values, W
 STEPS = 100  # evaluations of each residual; a search that takes more has lost its way
 TOLERANCE = 1e-9  # relative, of parameters and cost: far below any standard error, far above rounding
 ROUGH = 1e-5  # the same of a search that another one follows: a thousandth of what tells two fits apart
-CAP = 0.05  # added to the deviation in the logarithmic residual: no line alone pulls a poor start astray
 LARGEST_LAG = 3  # lines apart: one more than a Hann window correlates
 HANN_SHARES = (4 / 9, 1 / 36, 0.0)
 """Correlation of noise 1, 2 and 3 lines apart: squares of 2/3, 1/6, 0, of a Hann spectrum -1/4, 1/2, -1/4."""

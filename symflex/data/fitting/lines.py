@@ -28,7 +28,7 @@ MOST_DIGITS = 7  # numbers with so many digits, or fewer, count as rounded
 EXACT, SMALLEST = 1e-9, 1e-13  # relative and absolute deviation that conversion leaves from a rounded number
 STEP_REACH, STEP = 8, 6.5  # lines on either side of a step of the gain, and its least size in deviations
 FIRST_SHARE = 4  # part of the lines of a thinner grid, its inverse, that is spread evenly
-CAP = 0.05  # added to the deviation, so that a grid does not follow what a start does not need
+CAP = 0.05  # added to the deviation in the logarithmic residual: no line alone pulls a poor start astray
 
 
 def wild_lines(omega: Real, values: Complex) -> Whole:

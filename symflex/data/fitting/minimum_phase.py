@@ -26,7 +26,8 @@ from typing import Final, Literal
 import numpy as np
 from scipy.signal import medfilt
 
-from symflex.data.fitting.least_squares import CAP, EDGE, ROUGH, STEPS, search, triangle
+from symflex.data.fitting.least_squares import EDGE, ROUGH, STEPS, search, triangle
+from symflex.data.fitting.lines import CAP
 from symflex.data.fitting.observation import FittedLines
 from symflex.data.fitting.problem import FitProblem
 from symflex.data.fitting.resonances import Complex, Real, Resonances, Values

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from symflex.data.fitting.problem import FitProblem
 from symflex.data.fitting.resonances import Complex, Real, Resonances
-from symflex.data.fitting.starts import solved_real
+from symflex.data.fitting.starts import REAL, solved_real
 
 TURNS, PER_TURN = 2.5, 8  # delays tried on either side of that of the poles, in turns at the highest line
 MOST_LINES = 400
@@ -23,7 +23,6 @@ MOST_POLISHED = 12
 POLISHED = 4
 STRANGE, MOST_DAMPED = 10.0, 2.0  # BIC to gain by a pair of zeros that is hardly one; its least damping ratio
 FAR_OUTSIDE = 30.0  # frequency over the end of the band beyond which a pole bends nothing that a gain cannot
-REAL = 1e-9  # of a zero's magnitude: the imaginary part from which a zero is one of a pair
 
 
 @dataclass(frozen=True, eq=False)

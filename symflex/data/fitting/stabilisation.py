@@ -18,13 +18,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from symflex.data.fitting.fit import ResonanceFit
+from symflex.data.fitting.fit import MOST_LINES, ResonanceFit
 from symflex.data.fitting.resonances import Mask, Real
 from symflex.data.fitting.starts import relocated, spread
 
 FEWEST_ORDERS, MORE_ORDERS, MOST_ORDER = 6, 4, 40  # fewest pairs, those beyond the fit's, most poles
 SAME_FREQUENCY, SAME_DAMPING = 0.01, 0.05  # custom of modal analysis: relative moves of a stable pole
-MOST_LINES = 1000
 
 
 @dataclass(frozen=True, eq=False)

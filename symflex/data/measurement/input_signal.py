@@ -24,12 +24,11 @@ from typing import Final
 import numpy as np
 
 from symflex.data.measurement.arrays import Arrays, arrays_in, format_of, matrix_of
-from symflex.data.measurement.measured_response import MAX_ERRORS, MAX_LINES, listed_names
+from symflex.data.measurement.measured_response import MAX_BYTES, MAX_ERRORS, MAX_LINES, listed_names
 from symflex.data.measurement.text_table import SIGNS, TextTable, cut
 from symflex.errors import DataError, Diagnostic
 from symflex.model.spec.read import read_file
 
-MAX_BYTES: Final = 50_000_000
 ARRAYS: Final = (".npz", ".npy", ".mat", ".h5", ".hdf5", ".tdms", ".json")
 ENDINGS: Final = (".csv", ".txt", ".dat", ".tsv", ".asc", ".lvm", *ARRAYS)  # of files that hold inputs
 _UNITS: Final = {

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 SparseRow = dict[int, "fmpz_mpoly"]
 
 TERM_LIMIT = 6_000_000
-MEMORY_LIMIT = 300_000_000
+MEMORY_LIMIT = 300_000_000  # of all minors: a free chain of sixteen masses needs 270 MB
 """Terms and bytes of one opened polynomial: a free chain of twelve masses, all symbolic, has 5.6 million."""
 
 

@@ -30,7 +30,13 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 from symflex.algebra import LAPLACE, Factored, Ring, terms_of
 from symflex.algebra.straight_line import Step
 from symflex.budget import spend
-from symflex.equations.elimination.closing import ClosedSystem, ReducedSystem, close, eliminate_unit_pivots
+from symflex.equations.elimination.closing import (
+    MEMORY_LIMIT,
+    ClosedSystem,
+    ReducedSystem,
+    close,
+    eliminate_unit_pivots,
+)
 from symflex.equations.elimination.singular import explain_singular
 from symflex.errors import BudgetError, Diagnostic
 
@@ -90,7 +96,6 @@ class Determinants:
 
 MINOR_LIMIT = 200_000  # minors of one system: a full matrix of 17 rows has 131,072, a chain few
 ROW_LIMIT = 700  # unknowns left, not measured: 700 nested masses take 2.4 s and 60 MB
-MEMORY_LIMIT = 300_000_000  # of all minors: a free chain of sixteen masses needs 270 MB
 KERNEL_TERMS = 10_000  # of a minor with kernels: four beams have 2,500; 26,000 take 1 GB
 
 Entry = TypeVar("Entry")
