@@ -216,8 +216,8 @@ class _Fields:
     def _taken(self, known: Mapping[Variable, Terms]) -> dict[tuple[Variable, Variable], Factored] | None:
         """Return what circuits take from fields, as products of a node's effort with a flow; None if unknown.
 
-        A balance is what flows out through elements, minus what sources deliver. It is zero, and so is the power
-        of the elements minus that of the sources.
+        A balance is what flows out through elements, minus what sources deliver. It is zero, and so is the
+        power of the elements minus that of the sources.
         """
         flows: dict[Variable, Terms] = {}
         for row in (row for row in self.equations.rows if row.role == "signal"):
