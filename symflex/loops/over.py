@@ -55,10 +55,11 @@ from symflex.transfer.of_model import assemble, derive_all
 Interval = tuple[Ends, PoleCount]
 Row = list[OpenBox]  # boxes that touch
 WIDER, WIDER_PART = 10, 2  # times of its value that a parameter, of signals or of parts, may have by default
+INSIDE = (Fraction(1, 2), Fraction(3, 8))  # shares of a range at which an end of the poles is sought
 SLIVER = 64  # parts as narrow as the digits, up to which what lies between two boundaries is theirs
 LEAST = 10**6  # part of the range to which values about zero are enclosed
 ABOUT = 4  # widths by which a gap is widened to each side to prove that one pair crosses in it
-MOST_PARTS = 200  # open parts side by side beyond which poles stay on the axis where two of them meet
+MOST_PARTS = 64  # open parts side by side beyond which poles stay on the axis where two of them meet
 MOST_GAPS = 1000  # open parts side by side beyond which a pole touches the axis, or stays on it
 
 
@@ -104,9 +105,7 @@ def stability_over(
         undecided = float(share_of(given.resolve, "--resolve"))
         return find_chart(function, limits, nominal, parameters, undecided)
     search = partial(find_intervals_up_to, function, limits[0], digits, parameters[0], nominal[0], up_to)
-    # The poles may have no known end over a wide range, and one over its parts.
-    middle = tuple(((low + high) / 2,) * 2 for low, high in limits)
-    end = function.whole(middle).radius
+    end = _end_inside(function, limits[0])
     if isinstance(end, str) and end != VANISHES and PolesUpTo.serves(function):
         return exact.of_parameter if exact is not None and exact.intervals else search(end)
     halved = find_intervals(function, limits[0], digits, parameters[0], nominal[0])
@@ -116,6 +115,15 @@ def stability_over(
         return halved
     exact = exact or of_rational(model, names[0], limits[0], digits, up_to, has_pairs=True)
     return exact.of_parameter if exact is not None and exact.intervals else halved
+
+
+def _end_inside(function: CharacteristicFunction, limits: Ends) -> float | str:
+    """Return the end of the poles at a value in a range: over all of it they may have no known one."""
+    middle, beside = (limits[0] + share * (limits[1] - limits[0]) for share in INSIDE)
+    try:
+        return function.whole(((middle, middle),)).radius
+    except ModelError:  # a wave equation may lose its highest derivative in the middle
+        return function.whole(((beside, beside),)).radius
 
 
 def seen_pair(model: Model) -> tuple[str, str]:
@@ -278,27 +286,37 @@ def find_intervals_up_to(
 ) -> StabilityMap:
     """Return the same of poles up to a frequency [rad/s], where others have no end for the reason given."""
     poles = PolesUpTo.of(function, limits, up_to, bits_for_digits(digits) + BITS)
+
+    def halves(part: OpenPart) -> list[OpenPart]:
+        return [] if _is_narrow(part.ends, limits, digits) or poles.is_bare(part.ends) else part.halves
+
     search = branch(
         [poles.whole],
         poles.narrowed,
-        lambda part: [] if _is_narrow(part.ends, limits, digits) else part.halves,
+        halves,
         order="breadth",
         until=lambda _, waiting: waiting > MOST_PARTS,
         keeps=True,
     )
     narrow = len(search.undecided) - search.unseen - (search.over is not None)
-    gaps, wide = search.undecided[:narrow], search.undecided[narrow:]
+    bare = [part for part in search.undecided[:narrow] if poles.is_bare(part.ends)]
+    gaps = [part for part in search.undecided[:narrow] if part not in bare]
+    wide = search.undecided[narrow:]
     reasons = [reason]
+    for low, high in _joined([part.ends for part in bare]):
+        near = f"between {float(low):.6g} and {float(high):.6g} a wave equation nearly loses its"
+        reasons.append(f"{near} highest derivative: its waves are ever shorter there, and poles ever more")
     if search.over is not None:
         reasons.append(search.over.message)
     elif wide:
-        ends = f"{float(wide[0].ends[0]):.6g} and {float(wide[-1].ends[1]):.6g}"
+        open_parts = sorted(part.ends for part in wide)
+        ends = f"{float(open_parts[0][0]):.6g} and {float(open_parts[-1][1]):.6g}"
         reasons.append(f"it could not be decided whether poles leave the axis between {ends}")
     counted, uncounted = _counted_up_to(poles, sorted(search.decided, key=lambda part: part.ends))
     reasons += [f"poles could not be counted near {float(ends[0]):.6g}" for ends in uncounted]
     radius = float(poles.radius)
     boxes = [OpenBox((part.ends,), radius, poles.frequencies(part)) for part in gaps]
-    rest = [OpenBox((ends,), radius) for ends in (*(part.ends for part in wide), *uncounted)]
+    rest = [OpenBox((ends,), radius) for ends in (*(part.ends for part in (*bare, *wide)), *uncounted)]
     boundaries, intervals = _boundaries(function, counted, boxes, rest, limits, digits, reasons)
     return replace(
         _map_of(function, limits, digits, parameter, nominal),
@@ -416,7 +434,8 @@ def _boundaries(
     """
     boundaries: list[Boundary] = []
     first, last = (counted[0][0][0], counted[-1][0][1]) if counted else limits
-    starts, ends = [ball(limits[0]).union(ball(first))], list[arb]()
+    is_open = any(gap.box[0][1] <= first for gap in wide)
+    starts, ends = [ball(first) if is_open else ball(limits[0]).union(ball(first))], list[arb]()
     poles = [count for _, count in counted]
     for (before, count), (after, other) in pairwise(counted):
         own = [gap for gap in gaps if before[1] <= gap.box[0][0] < after[0]]
@@ -443,7 +462,8 @@ def _boundaries(
         )
         starts.append(ball(after[0]) if is_open else place)
         ends.append(ball(before[1]) if is_open else place)
-    ends.append(ball(limits[1]).union(ball(last)))
+    is_open = any(last <= gap.box[0][0] for gap in wide)
+    ends.append(ball(last) if is_open else ball(limits[1]).union(ball(last)))
     intervals = tuple(map(GainInterval, starts, ends, poles)) if poles else ()
     return tuple(boundaries), intervals
 

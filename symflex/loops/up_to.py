@@ -41,10 +41,10 @@ from symflex.balls import (
 )
 from symflex.budget import spend
 from symflex.expressions import names_among
-from symflex.loops.boxes import CharacteristicFunction, Ends, FirstOrder, Piece, factors_of
+from symflex.loops.boxes import BITS, CharacteristicFunction, Ends, FirstOrder, Piece, factors_of
 from symflex.loops.patches import ROOM, ULP, Bound, Patch, patch
 from symflex.loops.stability_map import PoleCount
-from symflex.roots.functions.kernel_function import KernelFunction
+from symflex.roots.functions.kernel_function import ANYWHERE, KernelFunction
 from symflex.roots.functions.reversal import is_reversed
 from symflex.roots.root import exact_fraction
 
@@ -55,6 +55,9 @@ WIDER = tuple(1 + Fraction(k, 32) for k in range(9))  # of the circle, for parts
 SHORTEST = 1e-9  # share of a path that is not halved where poles are counted
 MOST_OPEN = 48  # pieces left open after which others stay as they are: halves of the part leave fewer
 SPARE = 20  # bits by which pieces of the axis that are not halved are wider than the precision
+SHARES = (Fraction(0), Fraction(3, 8), Fraction(1, 2), Fraction(1))  # of a range, at which waves are compared
+SHORT = 64  # times as long as a part is the range, if a highest derivative vanishes in it
+SHORTER, BESIDE = 3, 4  # times as many waves as elsewhere; part of the range beside which they are looked for
 DEEPEST = 6  # halvings of the range until a patch has to serve
 WIDENED = 64  # widths by which places on the axis are widened to prove that one pair meets there
 STEPS, SHARE = 40, 0.9  # of Newton's method, each of which leaves less than this share
@@ -135,7 +138,8 @@ class PolesUpTo:
     def of(cls, function: CharacteristicFunction, limits: Ends, radius: float | None, bits: int) -> PolesUpTo:
         """Return those up to a frequency [rad/s], without one up to a few waves of the longest element."""
         if radius is None:
-            moving = _kernel_functions(function, function.at_rest[1], limits[1])
+            last = limits[1] if _keeps_order(function, (limits[1],) * 2) else _middle(limits)
+            moving = _kernel_functions(function, function.at_rest[1], last)
             radius = min(part.frequency_of(WAVES) for part in moving)
         return cls(function, Fraction(radius), limits, bits)
 
@@ -163,9 +167,16 @@ class PolesUpTo:
 
     @cached_property
     def _cells(self) -> int:
-        """A power of 2, about as many as radians in the waves along the longest element."""
-        waves = max(part.reach(float(self.radius)) for part in self._parts)
-        return 1 << ceil(log2(max(waves, FEW)))
+        """A power of 2, about as many as radians in the waves along the longest element for most values."""
+        return 1 << ceil(log2(max(self._waves[len(self._waves) // 2], FEW)))
+
+    @cached_property
+    def _waves(self) -> list[float]:
+        """How many radians the waves have at some values of the range, ascending."""
+        return sorted(self._reach(parts) for parts in self._parts)
+
+    def _reach(self, parts: Sequence[KernelFunction]) -> float:
+        return max(part.reach(float(self.radius)) for part in parts)
 
     @cached_property
     def _factors(self) -> tuple[tuple[fmpz_mpoly, int], ...]:
@@ -182,18 +193,43 @@ class PolesUpTo:
         return [i for i, (factor, _) in enumerate(self._factors) if factor in moving]
 
     @cached_property
-    def _parts(self) -> list[KernelFunction]:
-        """The factors for the last value of the range."""
-        return _kernel_functions(self.function, [f for f, _ in self._factors], self.limits[1])
+    def _parts(self) -> list[list[KernelFunction]]:
+        """The factors for some values of the range, the last one at its end if possible."""
+        low, high = self.limits
+        values = (low + share * (high - low) for share in SHARES)
+        return [self._at(value) for value in values if _keeps_order(self.function, (value, value))]
+
+    def _at(self, value: Fraction) -> list[KernelFunction]:
+        """Return the factors for one value."""
+        return _kernel_functions(self.function, [f for f, _ in self._factors], value)
 
     @cached_property
     def _are_even(self) -> list[bool]:
         """Whether roots of each are proved to mirror each other in the axis, whatever the value."""
-        parts = self._parts
+        parts = self._parts[-1]
         return [f.is_even or (f.is_real and is_reversed(f.part, f.bound.kernels)) for f in parts]
+
+    def is_bare(self, ends: Ends) -> bool:
+        """Tell whether a part is too near to where a wave equation loses its highest derivative.
+
+        Waves are ever shorter there, and poles ever more.
+        """
+        if not self._may_lose_order:
+            return False
+        if not _keeps_order(self.function, ends):
+            return (ends[1] - ends[0]) * SHORT < self._width
+        return self._reach(self._at(_middle(ends))) > SHORTER * self._waves[0]
+
+    @cached_property
+    def _may_lose_order(self) -> bool:
+        """Whether a wave equation loses its highest derivative in the range, or beside it."""
+        (low, high), beside = self.limits, self._width / BESIDE
+        return not _keeps_order(self.function, (low - min(beside, abs(low) / BESIDE), high + beside))
 
     def narrowed(self, part: OpenPart) -> OpenPart | Open[OpenPart]:
         """Return the part with a circle if poles stay where they are, else what the axis still has open."""
+        if not _keeps_order(self.function, part.ends) or self.is_bare(part.ends):
+            return Open(part)
         values = self._on(part.ends)
         pieces = zip(self._moving, part.pieces, strict=True)
         left = replace(part, pieces=tuple(self._left(values, factor, each) for factor, each in pieces))
@@ -439,6 +475,14 @@ def _directly(values: FirstOrder, factor: int, s: acb, middle: acb) -> Bound:
         float(by_part) if by_part.is_finite() else inf,
         float(by_path.abs_upper()) if by_path.is_finite() else inf,
     )
+
+
+def _keeps_order(function: CharacteristicFunction, ends: Ends) -> bool:
+    tf, _ = function.at_rest
+    with precision(BITS):
+        kernels = function.kernels(tf, (ends,))
+        at, laws = kernels.generators_at(acb(*ANYWHERE)), tf.kernels.dispersions
+        return all(at_centre(kernels.value(c, at)).is_finite() for law in laws for c in law.characteristic)
 
 
 def _kernel_functions(

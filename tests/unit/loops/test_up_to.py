@@ -177,3 +177,27 @@ def test_a_pole_at_rest_is_counted_beside_the_waves():
     found = model.stability(over="l", limits=(0.9, 1.1), up_to_hz=10, digits=10)
     # By hand: 0, and one pair, 3.5160 sqrt(EI/rhoA)/l^2 = 5.6 Hz; the next one is above 29 Hz.
     assert [(each.poles.right, each.poles.axis) for each in found.proved.intervals] == [(0, 3)]
+
+
+STRING = """
+symflex = 1
+parameters = { N = 1, rho = 1, l = 1, v = 0.5 }
+inputs = { y_0 = {} }
+outputs = { Y = "w(l/2)" }
+[fields.w]
+domain = ["0", "l"]
+equation = "(N - rho*v^2)*w'' - 2*rho*v*s*w' - rho*s^2*w = 0"
+conditions = ["w(0) = 0", "w(l) = y_0"]
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("limits", [(0.5, 1.5), (0.5, 1)])
+def test_where_waves_are_ever_shorter_nothing_is_decided(limits):
+    # Poles at j n pi (1 - v^2): none below 0.1 Hz up to v = 0.89, and infinitely many at v = 1, amid the
+    # range or at its end, where w'' has no coefficient.
+    found = loads(STRING).stability(over="v", limits=limits, up_to_hz=0.1)
+    first = found.proved.intervals[0]
+    assert (first.poles.right, first.poles.axis) == (0, 0)
+    assert 0.6 < float(first.high.mid()) < 0.9 and float(first.high.rad()) < 1e-12
+    assert any("loses its highest derivative" in reason for reason in found.proved.reasons)
