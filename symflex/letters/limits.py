@@ -37,7 +37,8 @@ from symflex.expressions.derivative import simplified
 from symflex.letters.routh import aligned, read
 from symflex.print.forms import print_form
 from symflex.print.forms.notation import reachable
-from symflex.print.forms.printed import S, in_roots
+from symflex.print.forms.printed import S
+from symflex.print.forms.root_of_s import in_roots
 from symflex.print.forms.shapes import of_powers, powers_of
 from symflex.print.latex.equation import model_labels, ratio_latex
 from symflex.print.latex.expression import Writer

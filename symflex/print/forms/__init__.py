@@ -126,8 +126,12 @@ def print_form(
     if tf.model.root is None:
         return made
     written = {d.name: d.expression for d in tf.model.definitions if d.name in made.definitions}
-    made = made.in_roots(tf.model.root)
-    return replace(made, where=tuple((name, written.get(name, e)) for name, e in made.where))
+    from symflex.print.forms.root_of_s import in_roots  # few models have one
+
+    where = tuple((name, written.get(name) or in_roots(e, tf.model.root)) for name, e in made.where)
+    return replace(
+        made, num=in_roots(made.num, tf.model.root), den=in_roots(made.den, tf.model.root), where=where
+    )
 
 
 def _arranged(tf: AnyTransferFunction, form: str | None, digits: int, arranged: Arranged) -> PrintedForm:

@@ -22,7 +22,8 @@ from symflex.print.forms.arrange import Arranger
 from symflex.print.forms.naming import Naming
 from symflex.print.forms.notation import Line, Notation, angles_of, constant_symbols, notation_of, reachable
 from symflex.print.forms.polynomial import kernel_printer
-from symflex.print.forms.printed import PrintedForm, in_roots
+from symflex.print.forms.printed import PrintedForm
+from symflex.print.forms.root_of_s import in_roots
 from symflex.print.forms.shapes import powers_of
 from symflex.print.read_back import read_hidden
 from symflex.transfer import AnyTransferFunction, TransferFunction

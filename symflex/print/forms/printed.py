@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
-from fractions import Fraction
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 from symflex.algebra import LAPLACE, Factored
@@ -16,18 +15,9 @@ from symflex.expressions import (
     Equation,
     Expression,
     Name,
-    Number,
-    Power,
     format_expression,
     names,
-    nodes,
-    power,
-    product_of,
-    replace_node,
-    substitute,
-    sum_of,
 )
-from symflex.model.model import RootOfS
 from symflex.transfer import TransferFunction
 from symflex.transfer.transfer_function import degree
 
@@ -36,7 +26,6 @@ if TYPE_CHECKING:
 
 
 S: Final = Name(LAPLACE)
-SQUARE: Final = 2  # the order of a root that has a sign of its own in print
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,16 +66,6 @@ class PrintedForm:
         """What is said of it besides the formula, a sentence an entry."""
         verdict = (self.stability.headline,) if self.stability else ()
         return verdict + (self.approximation.said if self.approximation else ())
-
-    def in_roots(self, root: RootOfS) -> PrintedForm:
-        """Return the form with a root of s in place of s."""
-
-        def lines(each: tuple[tuple[str, Expression], ...]) -> tuple[tuple[str, Expression], ...]:
-            return tuple((name, in_roots(e, root)) for name, e in each)
-
-        return replace(
-            self, num=in_roots(self.num, root), den=in_roots(self.den, root), where=lines(self.where)
-        )
 
     def at(self, name: str) -> str:
         """Return what a signal is called, with the argument where that is not s: ``X(omega)``."""
@@ -131,30 +110,6 @@ def forms_of(tf: TransferFunction) -> tuple[str, ...]:
     if tf.is_rational:
         return RATIONAL
     return WITHOUT_FORMULA if not tf.has_formula else DISTRIBUTED
-
-
-def in_roots(expression: Expression, root: RootOfS) -> Expression:
-    """Return an expression with a root of s in place of s, powers of which are written as short as can be.
-
-    >>> from symflex.expressions import number
-    >>> from symflex.model.model import RootOfS
-    >>> cubed = product_of([power(S, 3), Call("exp", S)])
-    >>> format_expression(in_roots(cubed, RootOfS(number(1), number(0), 2)))
-    's*sqrt(s)*exp(sqrt(s))'
-    """
-    inner, order = Name("_s"), root.order  # until no other s is left
-    base = sum_of([product_of([root.slope, inner]), root.shift])
-
-    def image(exponent: int) -> Expression:
-        whole, part = divmod(exponent, order)
-        if order == SQUARE:
-            return product_of([power(base, whole), *([Call("sqrt", base)] if part else [])])
-        return power(base, whole) if not part else Power(base, Number(Fraction(exponent, order)))
-
-    for node in nodes(expression):
-        if isinstance(node, Power) and node.base == S and isinstance(node.exponent, Number):
-            expression = replace_node(expression, node, image(int(node.exponent.value)))
-    return substitute(substitute(expression, {LAPLACE: image(1)}), {inner.name: S})
 
 
 def require(tf: TransferFunction, form: str) -> None:
