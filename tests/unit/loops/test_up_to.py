@@ -6,6 +6,7 @@ two poles meet on the axis. Beck (1952), Gregory and Paidoussis (1966), Bolotin 
 
 from math import pi, sqrt
 
+import mpmath
 import numpy as np
 import pytest
 from flint import acb
@@ -201,3 +202,107 @@ def test_where_waves_are_ever_shorter_nothing_is_decided(limits):
     assert (first.poles.right, first.poles.axis) == (0, 0)
     assert 0.6 < float(first.high.mid()) < 0.9 and float(first.high.rad()) < 1e-12
     assert any("loses its highest derivative" in reason for reason in found.proved.reasons)
+
+
+CLAMPED = """
+symflex = 1
+parameters = {{ {parameters} }}
+inputs = {{ q = {{}} }}
+outputs = {{ Y = "{at}" }}
+[fields.w]
+domain = ["0", "1"]
+equation = "{equation} + s^2*w = q"
+conditions = ["w(0) = 0", "w'(0) = 0", "{first}", "{second}"]
+"""
+COMPRESSED = "w'''' + P*w''"
+
+
+def at_tip(p, w):
+    """Return u, u', u'', u''' at 1 of two solutions of u'''' + p u'' = w^2 u with u(0) = u'(0) = 0."""
+    half = mpmath.sqrt(p * p / 4 + w * w)
+    a, b = mpmath.sqrt(half + p / 2), mpmath.sqrt(half - p / 2)
+    s, c, sh, ch = mpmath.sin(a), mpmath.cos(a), mpmath.sinh(b), mpmath.cosh(b)
+    return (
+        (ch - c, b * sh + a * s, b * b * ch + a * a * c, b**3 * sh - a**3 * s),
+        (sh / b - s / a, ch - c, b * sh + a * s, b * b * ch + a * a * c),
+    )
+
+
+def flutter(guess, shear):
+    """Return load and frequency where two poles of a column with u'' = 0 and a shear at its tip meet."""
+
+    def value(p, w):
+        one, two = at_tip(p, w)
+        return one[2] * shear(two, p, w) - two[2] * shear(one, p, w)
+
+    with mpmath.mp.workdps(30):
+        found = mpmath.findroot(lambda p, w: [value(p, w), mpmath.diff(lambda x: value(p, x), w)], guess)
+    return float(found[0]), float(found[1])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("parameters", "equation", "ends", "limits", "expected"),
+    [
+        # On an elastic foundation Beck's load stays what it is (Smith and Herrmann 1972).
+        (
+            "P = 10, k = 50",
+            COMPRESSED + " + k*w",
+            ("w''(1) = 0", "w'''(1) = 0"),
+            (20, 20.1),
+            (BECK, sqrt(BECK_OMEGA**2 + 50)),
+        ),
+        # A load along a fixed line: the adjoint of Beck's column (Reut 1939).
+        (
+            "P = 10",
+            COMPRESSED,
+            ("w''(1) + P*w(1) = 0", "w'''(1) + P*w'(1) = 0"),
+            (20, 20.1),
+            (BECK, BECK_OMEGA),
+        ),
+        # With a mass at its tip (Pflueger 1950).
+        (
+            "P = 10, M = 0.5",
+            COMPRESSED,
+            ("w''(1) = 0", "w'''(1) = M*s^2*w(1)"),
+            (16, 16.1),
+            flutter((16, 7.2), lambda u, _, w: u[3] + w * w * u[0] / 2),
+        ),
+        # A force that turns with three quarters of the slope.
+        (
+            "P = 10, h = 0.75",
+            COMPRESSED,
+            ("w''(1) = 0", "w'''(1) + (1 - h)*P*w'(1) = 0"),
+            (17.1, 17.2),
+            flutter((17.2, 9.6), lambda u, p, _: u[3] + p * u[1] / 4),
+        ),
+        # Divergence, clamped and pinned: tan x = x.
+        ("P = 10", COMPRESSED, ("w(1) = 0", "w''(1) = 0"), (20, 20.3), (4.493409457909064**2, 0)),
+        # A pipe and a belt, clamped at both ends, lose their stiffness as a column does, at 4 pi^2.
+        (
+            "V = 5, m = 0.3",
+            "w'''' + m*V^2*w'' + 2*m*V*s*w'",
+            ("w(1) = 0", "w'(1) = 0"),
+            (11.4, 11.5),
+            (2 * pi / sqrt(0.3), 0),
+        ),
+        (
+            "v = 5",
+            "w'''' - (1 - v^2)*w'' + 2*v*s*w'",
+            ("w(1) = 0", "w'(1) = 0"),
+            (6.3, 6.4),
+            (sqrt(1 + 4 * pi**2), 0),
+        ),
+    ],
+    ids=["foundation", "reut", "pflueger", "subtangential", "clamped_pinned", "pipe", "belt"],
+)
+def test_a_critical_load_is_that_of_the_book(parameters, equation, ends, limits, expected):
+    value, omega = expected
+    at, up_to_hz, change = ("w(1)", 2.5, 2) if omega else ("w(1/2)", 1, 1)
+    first, second = ends
+    text = CLAMPED.format(parameters=parameters, equation=equation, at=at, first=first, second=second)
+    found = loads(text).stability(over=parameters[0], limits=limits, up_to_hz=up_to_hz, digits=12)
+    (boundary,) = found.proved.boundaries
+    assert float(boundary.gain.mid()) == pytest.approx(value, rel=1e-11)
+    assert [float(w.mid()) for w in boundary.frequencies] == pytest.approx([omega], rel=1e-10)
+    assert found.proved.change(0) == change
