@@ -23,7 +23,6 @@ from symflex.print.forms.naming import Naming
 from symflex.print.forms.notation import Line, Notation, angles_of, constant_symbols, notation_of, reachable
 from symflex.print.forms.polynomial import kernel_printer
 from symflex.print.forms.printed import PrintedForm
-from symflex.print.forms.root_of_s import in_roots
 from symflex.print.forms.shapes import powers_of
 from symflex.print.read_back import read_hidden
 from symflex.transfer import AnyTransferFunction, TransferFunction
@@ -47,8 +46,11 @@ def hidden_expressions(tf: AnyTransferFunction) -> Hidden:
         arranger = Arranger.plain(tf.ring, constant_symbols(tf))
         factors = tuple((arranger.collected(h.polynomial), h.multiplicity) for h in tf.hidden)
     read_hidden(tf, PrintedForm("", number(1), number(1)), factors)
-    root = tf.model.root
-    return factors if root is None else tuple((in_roots(e, root), m) for e, m in factors)
+    if tf.model.root is None:
+        return factors
+    from symflex.print.forms.root_of_s import in_roots  # few models have one
+
+    return tuple((in_roots(e, tf.model.root), m) for e, m in factors)
 
 
 def with_hidden(tf: AnyTransferFunction, form: PrintedForm) -> tuple[PrintedForm, Hidden]:
