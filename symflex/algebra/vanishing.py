@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cache
 from random import Random
 
@@ -240,13 +241,21 @@ TRIALS = 4  # values of the parameters that are tried in each field
 
 
 class OriginSeries:
-    """Orders at s = 0, or where ``at`` vanishes, of functions over a ring, up to ``terms`` quarters."""
+    """Orders at s = 0, or where ``at`` vanishes, of functions over a ring, up to ``terms`` quarters.
+
+    They are those for almost all values of the parameters, or for the ``known`` ones.
+    """
 
     def __init__(
-        self, ring: Ring, table: KernelTable, at: fmpz_mpoly | None = None, terms: int = ORIGIN_TERMS
+        self,
+        ring: Ring,
+        table: KernelTable,
+        at: fmpz_mpoly | None = None,
+        terms: int = ORIGIN_TERMS,
+        known: Mapping[str, Fraction] | None = None,
     ) -> None:
         self.ring = ring
-        self._found = _find_point(ring, table, ring.context.gen(0) if at is None else at, terms)
+        self._found = _find_point(ring, table, ring.context.gen(0) if at is None else at, terms, known or {})
 
     def order(self, value: Factored) -> int | None:
         """Return the order of the zero (negative: of the pole), ``None`` when it is not found."""
@@ -263,9 +272,9 @@ class OriginSeries:
 
 
 def _find_point(
-    ring: Ring, table: KernelTable, at: fmpz_mpoly, terms: int
+    ring: Ring, table: KernelTable, at: fmpz_mpoly, terms: int, known: Mapping[str, Fraction]
 ) -> tuple[TaylorField, dict[str, nmod_poly]] | None:
-    """Return series for all generators near where a polynomial vanishes."""
+    """Return series for all generators near where a polynomial vanishes, with some numbers given."""
     if any(d.kind in ("general", "varying") for d in table.dispersions):
         return None
     index = next((i for i in range(len(ring.names)) if degree_in(at, i) == 1), 0)
@@ -273,6 +282,8 @@ def _find_point(
     name, zero = ring.names[index], ring.constant(0)
 
     def prepare(values: dict[str, nmod_poly], field: TaylorField) -> bool:
+        for given, x in known.items():
+            values[given] = field.constant(x.numerator * pow(x.denominator, -1, field.prime))
         coefficients = [
             field.polynomial(parts.get(k, zero), ring.names, values) for k in range(max(parts) + 1)
         ]

@@ -228,9 +228,9 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int) -> Po
 DEFAULT_MODES = 5  # number of modes if neither the model nor the user gives it
 
 
-def default_region(bound: AnyBoundFunction) -> Region:
+def default_region(model: Model) -> Region:
     """Return where to search by default: the model's modes, its band, or five modes."""
-    analysis = bound.source.model.analysis
+    analysis = model.analysis
     if analysis.modes is not None:
         return Modes(analysis.modes)
     return Modes(DEFAULT_MODES) if analysis.band is None else Band(*analysis.band)
@@ -239,7 +239,7 @@ def default_region(bound: AnyBoundFunction) -> Region:
 def _region_of(bound: AnyBoundFunction, region: Region | None) -> tuple[Region, bool]:
     """Return where to search, and whether nobody said where: all roots of a rational function are found."""
     if region is None or isinstance(region, Everything):
-        return (Everything(), False) if bound.is_rational else (default_region(bound), True)
+        return (Everything(), False) if bound.is_rational else (default_region(bound.source.model), True)
     return region, False
 
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
 
-from flint import arb, arb_poly, fmpz_mpoly, fmpz_mpoly_ctx
+from flint import arb, arb_poly, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_poly
 
 from symflex.algebra import Factored, Ring, degree_in, square_free_factors
 from symflex.balls import precision, value_at
@@ -184,6 +184,9 @@ def split(problem: RootProblem) -> Splitting:
     >>> splitting.zeros, [(part.polynomial.integers(), part.in_square) for part in splitting.parts]
     (2, [((4, 1), True), ((1, 1), False)])
     """
+    simple = _split_simple(problem)
+    if simple is not None:
+        return simple
     ring = _Ring.of(problem)
     zeros = 0
     base: list[tuple[fmpz_mpoly, int]] = []
@@ -202,6 +205,23 @@ def split(problem: RootProblem) -> Splitting:
             if _degree(part) > 0:
                 parts.append(SquareFreePart(ring.lower(part, step), multiplicity, in_square=part is even))
     return Splitting(zeros, tuple(parts))
+
+
+def _split_simple(problem: RootProblem) -> Splitting | None:
+    """Return the parts of one polynomial with integers, None if it has squares or there are more."""
+    if len(problem.factors) != 1 or not problem.factors[0][0].is_exact:
+        return None
+    ((polynomial, exponent),) = problem.factors
+    integers = polynomial.integers()
+    low = next(i for i, c in enumerate(integers) if c)
+    common = math.gcd(*integers)
+    whole = fmpz_poly([c // common for c in integers[low:]])
+    if whole.gcd(whole.derivative()).degree() > 0:
+        return None
+    even = whole.gcd(whole(fmpz_poly([0, -1])))
+    parts = [(even.coeffs()[::2], True), ((whole // even).coeffs(), False)]
+    found = ((PolynomialInS.from_integers([int(c) for c in part]), square) for part, square in parts)
+    return Splitting(low * exponent, tuple(SquareFreePart(p, exponent, x) for p, x in found if p.degree))
 
 
 def _insert(

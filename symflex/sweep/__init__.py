@@ -1,8 +1,9 @@
-"""Sweeps: a design of parameter points, each solved on its own, the results put in order and named.
+"""Sweeps: a design of parameter points, each solved, the results put in order and named.
 
 Input: a model, a :class:`Design` of values, and what is wanted at each point. Output: a :class:`Sweep` of
-labelled arrays. What is computed at a point depends on nothing but the point, so that neither the number of
-workers, nor the order in which they finish, nor a restart in between changes a byte of the result.
+labelled arrays. What is computed at a point depends on nothing but the points of its chunk before it, so that
+neither the number of workers, nor the order in which they finish, nor a restart in between changes a byte of
+the result.
 """
 
 from symflex.sweep.design import Design, Range, Task, design_of, read_design

@@ -40,6 +40,7 @@ LINE, FACTOR = 0.25, 0.5  # foretold along a line, or by a factor: trusted up to
 FAR = 1.5  # a root further in ln(s) from where any was foretold has a name of its own
 MEETING = 1e-9  # closer than this in ln(s), paths meet
 NEIGHBOURS = 32  # nearest draws that are looked through for one closer to the middle, before all are
+AT_ONCE = 1 << 18  # pairs of roots that are compared in one array
 PIECES = (4, 16)  # into how many a step is divided on which names are in doubt
 
 
@@ -165,6 +166,7 @@ def follow(s: Complexes, family: Integers, steps: Predecessors, between: Between
     # Where every name was seen last on the way to a point; NaN for one not met on it.
     seen: dict[int, Complexes] = {}
     needed = Counter((*steps.before, *steps.earlier))
+    keeps_order = _in_order(logarithms, count, steps)
     modes = 0
     for i in steps.order:
         n, parent = int(count[i]), steps.before[i]
@@ -177,6 +179,8 @@ def follow(s: Complexes, family: Integers, steps: Predecessors, between: Between
             old = mode[parent, : count[parent]]
             if family[i] and family[i] == family[parent] and n == count[parent]:
                 names, links = old.copy(), np.full(n, NameOrigin.SIMILAR, np.int8)
+            elif keeps_order[i] and (steps.earlier[i] < 0 or np.array_equal(old, mode[steps.earlier[i], :n])):
+                names, links = old.copy(), np.full(n, NameOrigin.CLEAR, np.int8)
             else:
                 step = _steps_before(seen, steps, i, old)
                 here = logarithms[parent, : len(old)]
@@ -194,6 +198,38 @@ def follow(s: Complexes, family: Integers, steps: Predecessors, between: Between
             if not needed[one]:
                 seen.pop(one, None)
     return Names(mode, link, modes)
+
+
+def _in_order(logarithms: Complexes, count: Integers, steps: Predecessors) -> npt.NDArray[np.bool_]:
+    """Return at which points every root continues the one in its place, if it did so at the predecessor.
+
+    This is what :func:`_continued` says wherever nothing is in doubt, for all points at once.
+    """
+    order, before, earlier = (np.array(each) for each in (steps.order, steps.before, steps.earlier))
+    alike = (before >= 0) & (count > 0) & (count == count[before])
+    alike &= (earlier < 0) | (count == count[earlier])
+    keeps = np.zeros(len(order), np.bool_)
+    for n in np.unique(count[alike]):
+        places = np.nonzero(alike & (count == n))[0]
+        for some in np.array_split(places, -(-len(places) * n**2 // AT_ONCE)):
+            now, here = logarithms[some, :n], logarithms[before[some], :n]
+            step = (here - logarithms[earlier[some], :n]) * np.array(steps.ratio)[some, None]
+            step[earlier[some] < 0] = 0.0
+            factor = np.median((now - here).real, axis=1)[:, None]
+            close = _closest(here, now) - MEETING
+            close[:, range(n), range(n)] = np.inf
+            is_clear = np.zeros(len(some), np.bool_)
+            is_straight = np.all(_is_real(here) == _is_real(now), axis=1)
+            for foretold, least in ((here + step, LINE), (here, 0.0), (here + factor, FACTOR)):
+                cost = np.abs(foretold[:, :, None] - now[:, None, :])
+                own = cost[:, range(n), range(n)]
+                cost[:, range(n), range(n)] = np.inf
+                error = np.maximum(own, least * np.abs(now - here))
+                doubtful = close <= CLEAR * (error[:, :, None] + error[:, None, :])
+                is_clear |= ~np.any(doubtful, axis=(1, 2))
+                is_straight &= np.all(own < np.min(cost, axis=2), axis=1)
+            keeps[some] = is_clear & is_straight
+    return keeps
 
 
 def _steps_before(seen: dict[int, Complexes], steps: Predecessors, i: int, old: Integers) -> Complexes | None:
@@ -248,8 +284,9 @@ def _continued(
         # All frequencies may have moved by one factor.
         foretold.append((before + np.median((now - before).real), FACTOR))
     best = min((_assigned(before, *place, now) for place in foretold), key=lambda assignment: assignment[:2])
+    were_real, are_real = _is_real(before), _is_real(now)
     for (row, column), is_clear in zip(best[2], best[3], strict=True):
-        met = _is_real(before[row]) != _is_real(now[column])
+        met = were_real[row] != are_real[column]
         if abs(now[column] - before[row]) > FAR and (met or not is_clear):
             continue
         names[column] = old[row]
@@ -283,9 +320,12 @@ def _assigned(
 
 
 def _closest(start: Complexes, end: Complexes) -> Doubles:
-    """Return how close every two paths come that run straight from one point to another, at one time."""
-    first = start[:, None] - start[None, :]
-    change = end[:, None] - end[None, :] - first
+    """Return how close every two paths come that run straight from one point to another, at one time.
+
+    The last axis counts paths; those before it, if any, are points of the sweep.
+    """
+    first = start[..., :, None] - start[..., None, :]
+    change = end[..., :, None] - end[..., None, :] - first
     size = np.abs(change) ** 2
     time = np.divide(-(first * change.conj()).real, size, out=np.zeros(size.shape), where=size > 0)
     return np.asarray(np.abs(first + np.clip(time, 0, 1) * change), np.float64)
@@ -295,5 +335,5 @@ def _distances(a: Complexes, b: Complexes) -> Doubles:
     return np.abs(a[:, None] - b[None, :])
 
 
-def _is_real(logarithm: complex) -> bool:
-    return abs(logarithm.imag) in (0.0, np.pi)
+def _is_real(logarithms: Complexes) -> npt.NDArray[np.bool_]:
+    return np.isin(np.abs(logarithms.imag), (0.0, np.pi))

@@ -9,28 +9,38 @@ points.
 from __future__ import annotations
 
 import pickle
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import IntEnum
 from fractions import Fraction
 from functools import lru_cache
 from hashlib import sha256
 from math import hypot, inf, nan, nextafter, pi, ulp
-from typing import Literal
 
 import numpy as np
-from flint import arb
+from flint import arb, fmpq, fmpq_poly, fmpz_mpoly, fmpz_poly
 
+from symflex.algebra import LAPLACE, Ring, terms_of
 from symflex.balls import precision
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, SymflexError
 from symflex.loops import StabilityMap, characteristic_loop, find_stable_gains, pick_gain
 from symflex.model import ExactValue
-from symflex.roots import Everything, Modes, PoleZeroMap, Region, Root
+from symflex.roots import (
+    Everything,
+    Modes,
+    PoleZeroMap,
+    PolynomialInS,
+    Region,
+    Root,
+    RootProblem,
+    find_pole_zero_map,
+)
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
 from symflex.roots.pole_zero_map import NOT_EXAMINED, StabilityVerdict
 from symflex.roots.root import degrees, hertz
+from symflex.sweep.continuation import Continuation, RootKind
 from symflex.sweep.design import Point, Range, Rows, Solver, Task, between, codes_of, derived
 from symflex.sweep.similarity import Similarities, Similarity
 from symflex.transfer import AnyBoundFunction, AnyTransferFunction, bind_any
@@ -97,10 +107,10 @@ def _nearest(mantissa: int, exponent: int) -> float:
     return mantissa / (1 << -exponent) if exponent < 0 else float(mantissa << exponent)
 
 
-RootKind = Literal["poles", "zeros"]
 LADDER = (20, 40, 80)  # digits, until the nearest doubles are known
 SIMILAR_DIGITS = 40
 SCALE_BITS = 192
+CHANCES = 3  # times that roots of a chunk may fail to be carried at all before all points are searched
 REMEMBERED = 256  # points that stand for all similar ones, of which so many are kept
 FAMILY_BYTES = 7
 
@@ -157,6 +167,110 @@ class _Known:
     roots: tuple[Root, ...]
 
 
+Prepared = tuple[tuple[fmpq, tuple[tuple[str, int], ...]], ...]  # terms: a number times powers of parameters
+
+
+@dataclass(frozen=True, slots=True)
+class PolynomialQuotient:
+    """A transfer function of lumped parts, its polynomials in s prepared for values of some parameters.
+
+    Each is a tuple of coefficients, in ascending powers of s, with its exponent. What was derived, and
+    compared with the equations, for any values need not be for each; where values make factors of numerator
+    and denominator equal, or a parameter zero, the function is another one, and is bound anew.
+    """
+
+    name: str
+    sides: tuple[tuple[tuple[tuple[Prepared, ...], int], ...], ...]  # denominator, numerator, what cancelled
+    signed: frozenset[str]  # parameters that may be negative
+
+    @classmethod
+    def of(
+        cls, tf: AnyTransferFunction, names: Sequence[str], fixed: Mapping[str, ExactValue]
+    ) -> PolynomialQuotient | None:
+        """Return the function with ``fixed`` values; None if it has kernels, roots or irrational numbers."""
+        if not tf.is_reduced or tf.is_large or not tf.is_rational or tf.is_zero or tf.with_waves is not None:
+            return None
+        if tf.model.root is not None or tf.model.imaginary:
+            return None
+        factors = tf.ratio.factors
+        sides = (
+            [(f, -e) for f, e in factors if e < 0],
+            [(f, e) for f, e in factors if e > 0],
+            [(h.polynomial, h.multiplicity) for h in tf.hidden],
+        )
+        used = tf.ring.used_in([f for side in sides for f, _ in side]) - {LAPLACE, *names}
+        numbers = {name: fixed[name] for name in used if name in fixed}
+        if len(numbers) < len(used) or any(not x.rational or x.pi_power for x in numbers.values()):
+            return None
+        exact = {name: fmpq(x.rational.numerator, x.rational.denominator) for name, x in numbers.items()}
+        prepared = tuple(tuple((_prepared(tf.ring, f, exact), e) for f, e in side) for side in sides)
+        signed = frozenset(p.name for p in tf.model.parameters if p.assume == "real")
+        return cls(tf.name, prepared, signed)
+
+    def at(self, values: Mapping[str, ExactValue]) -> QuotientAtPoint | None:
+        """Return the function with numbers; None where these make another function of it."""
+        numbers = {}
+        for name, x in values.items():
+            if not x.rational or x.pi_power or (x.rational < 0 and name not in self.signed):
+                return None
+            numbers[name] = fmpq(x.rational.numerator, x.rational.denominator)
+        den, num, hidden = (
+            [(_polynomial_at(coefficients, numbers), e) for coefficients, e in side] for side in self.sides
+        )
+        is_another = any(f.is_zero() for side in (den, num, hidden) for f, _ in side)
+        if is_another or any(f.gcd(g).degree() > 0 for f, _ in den for g, _ in num):
+            return None
+        return QuotientAtPoint(self.name, _problem(den), _problem(num), tuple(_problem([h]) for h in hidden))
+
+
+@dataclass(frozen=True, slots=True)
+class QuotientAtPoint:
+    """A quotient of polynomials without common factors, and what cancelled."""
+
+    name: str
+    den: RootProblem
+    num: RootProblem
+    hidden: tuple[RootProblem, ...]
+
+    def located(self, region: Region | None, digits: int, kind: RootKind) -> PoleZeroMap:
+        """Return poles and hidden modes, and zeros if these are asked for."""
+        zeros = self.num if kind == "zeros" else RootProblem(())
+        hidden = [(problem, "cancelled") for problem in self.hidden]
+        return find_pole_zero_map(self.name, self.den, zeros, region, digits, hidden)
+
+
+def _prepared(ring: Ring, factor: fmpz_mpoly, numbers: Mapping[str, fmpq]) -> tuple[Prepared, ...]:
+    """Return the coefficients of s of a polynomial with numbers for some generators."""
+    powers: dict[int, dict[tuple[tuple[str, int], ...], fmpq]] = {}
+    for monomial, coefficient in terms_of(factor):
+        named = [(ring.names[i], e) for i, e in monomial]
+        number = fmpq(int(coefficient))
+        for name, e in named:
+            number *= numbers[name] ** e if name in numbers else 1
+        key = tuple((name, e) for name, e in named if name != LAPLACE and name not in numbers)
+        own = powers.setdefault(dict(named).get(LAPLACE, 0), {})
+        own[key] = own.get(key, fmpq(0)) + number
+    return tuple(tuple((c, key) for key, c in powers.get(i, {}).items()) for i in range(max(powers) + 1))
+
+
+def _polynomial_at(coefficients: Sequence[Prepared], numbers: Mapping[str, fmpq]) -> fmpz_poly:
+    """Return a polynomial, up to a factor, at values of its parameters."""
+    values = []
+    for terms in coefficients:
+        total = fmpq(0)
+        for number, powers in terms:
+            for name, e in powers:
+                number = number * numbers[name] ** e  # noqa: PLW2901
+            total += number
+        values.append(total)
+    return fmpq_poly(values).numer()
+
+
+def _problem(factors: Sequence[tuple[fmpz_poly, int]]) -> RootProblem:
+    own = (([int(c) for c in f.coeffs()], e) for f, e in factors if f.degree() > 0)
+    return RootProblem(tuple((PolynomialInS.from_integers(integers), e) for integers, e in own))
+
+
 class RootSolver:
     """Finds the roots of one transfer function, ``poles`` or ``zeros``, at many points.
 
@@ -178,25 +292,81 @@ class RootSolver:
         if any(value is None and name not in self._names for name, value in used.items()):
             self._similarities = None
         self._models: dict[object, _Known | None] = {}
+        self._quotient = PolynomialQuotient.of(tf, names, self._declared)
+        self._continuation = Continuation.of(tf, names, kind, region)
 
     def __call__(self, point: Point) -> PointRoots:
         """Return the roots at a point; what fails there is said, not raised."""
         try:
-            return self._solve(dict(zip(self._names, point, strict=True)))
+            return self._solve(self._values(point))
         except SymflexError as error:
             spend()  # that the time is over says nothing of a point
             return PointRoots((), 0, PointStatus.FAILED, code=error.diagnostics[0].code)
+
+    def each(self, points: Sequence[Point]) -> list[PointRoots]:
+        """Return the roots at points in a row, carried from one to the next where that is proved."""
+        found: list[PointRoots] = []
+        chances = 0 if self._continuation is None else CHANCES
+        while len(found) < len(points):
+            i = len(found)
+            found.append(self(points[i]))
+            if chances:
+                carried = self._carried(points[i], found[i], points[i + 1 :])
+                chances -= not carried
+                found += carried
+        return found
+
+    def _values(self, point: Point) -> dict[str, ExactValue]:
+        return dict(zip(self._names, point, strict=True))
+
+    def _carried(self, point: Point, known: PointRoots, points: Sequence[Point]) -> list[PointRoots]:
+        """Return the roots at points after one whose roots are known, as far as they can be carried."""
+        continuation = self._continuation
+        if continuation is None or known.status is not PointStatus.CERTIFIED:
+            return []
+        families: list[int] = []
+        for each in points:
+            similarity, family = self._similarity(self._values(each))
+            if similarity is not None and similarity.key in self._models:
+                break  # one factor more is quicker
+            families.append(family)
+        is_simple = all(r.multiplicity == 1 and r.status is RootStatus.CERTIFIED for r in known.roots)
+        if not families or not is_simple:
+            return []
+        guesses = [complex(root.place.re, root.place.im) for root in known.roots]
+        try:
+            start = continuation.begin(point, guesses, known.at_zero)
+            way = continuation.carry(start, points[: len(families)], known.verdict) if start else []
+        except SymflexError:
+            spend()
+            return []
+        found = []
+        for roots, family in zip(map(continuation.chosen, way), families, strict=False):
+            rows = tuple(FoundRoot(doubles(r.re, r.im), 1, RootStatus.CERTIFIED) for r in _upper(roots))
+            if not all(row.place.is_nearest for row in rows):
+                break
+            found.append(replace(known, roots=rows, family=family))
+        return found
 
     def _bound(self, values: dict[str, ExactValue]) -> AnyBoundFunction:
         bound = bind_any(self._tf, values)
         return without_lengths_of_zero(bound) if bound.is_reduced else bound
 
-    def _solve(self, values: dict[str, ExactValue]) -> PointRoots:
+    def _similarity(self, values: dict[str, ExactValue]) -> tuple[Similarity | None, int]:
+        """Return to which functions the one of some values is similar, and a number for all of these."""
         similarity = self._similarities.at({**self._declared, **values}) if self._similarities else None
         if similarity is None:
-            return self._searched(self._bound(values), 0)
+            return None, 0
         text = repr((similarity.degree, similarity.key)).encode()
-        family = int.from_bytes(sha256(text).digest()[:FAMILY_BYTES], "big") + 1
+        return similarity, int.from_bytes(sha256(text).digest()[:FAMILY_BYTES], "big") + 1
+
+    def _solve(self, values: dict[str, ExactValue]) -> PointRoots:
+        similarity, family = self._similarity(values)
+        if similarity is None:
+            quotient = None if self._quotient is None else self._quotient.at(values)
+            if quotient is None:
+                return self._searched(self._bound(values), 0)
+            return self._rounded(lambda digits: quotient.located(self._region, digits, self._kind), 0)
         if similarity.key not in self._models:
             if len(self._models) >= REMEMBERED:
                 self._models.clear()
@@ -221,8 +391,12 @@ class RootSolver:
         return _Known(similarity, model, roots) if is_proved else _Known(similarity, None, ())
 
     def _searched(self, bound: AnyBoundFunction, family: int) -> PointRoots:
+        return self._rounded(lambda digits: locate(bound, self._region, digits), family)
+
+    def _rounded(self, located: Callable[[int], PoleZeroMap], family: int) -> PointRoots:
+        """Return the roots to as many digits as their nearest doubles take."""
         for digits in LADDER:
-            result = self._chosen(locate(bound, self._region, digits), family)
+            result = self._chosen(located(digits), family)
             if all(r.place.is_nearest or r.status is RootStatus.TOGETHER for r in result.roots):
                 break
         return result
@@ -261,7 +435,7 @@ def _scaled(roots: Sequence[Root], known: Similarity, wanted: Similarity) -> tup
 def solve_roots(task: Task) -> Solver:
     """Return what finds the poles, or the zeros, of the task's transfer function."""
     solver = RootSolver(derived(task), task.names, "poles" if task.of == "poles" else "zeros", task.region)
-    return lambda points: _rows([solver(point) for point in points])
+    return lambda points: _rows(solver.each(points))
 
 
 def _rows(points: Sequence[PointRoots]) -> Rows:

@@ -50,7 +50,7 @@ from symflex.sweep.files import FolderJournal, check_writable, open_journal, swe
 from symflex.sweep.follow import Between, Complexes
 from symflex.sweep.labelled import Sweep, assembled
 from symflex.sweep.points import PointStatus, logarithmic, solve_chunk
-from symflex.transfer.of_model import pick_pairs
+from symflex.transfer.of_model import is_large_network, pick_pairs
 
 CONNECT_SECONDS = 10
 
@@ -160,24 +160,33 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
 
 CHUNKS = 200  # into about how many a sweep is cut
 LARGEST_CHUNK = 1000
+IN_A_ROW = 25  # points of which the first takes no more than all others, as a rule
 AHEAD = 4  # chunks per worker that are handed out before any is back
 MOST_BETWEEN = (40, 400)  # points solved between others, where names are in doubt: a tenth, within these
 MINUTE = 60.0
 HOUR = 3600.0
 
 
-def chunk_size(count: int) -> int:
+def chunk_size(count: int, together: int = 1) -> int:
     """Return how many points a worker solves at a time, and the most that a kill loses per worker.
 
-    >>> [chunk_size(count) for count in (7, 10_000, 1_000_000)]
-    [1, 50, 1000]
+    So many points stay ``together``, if there are as many.
+
+    >>> [chunk_size(count) for count in (7, 10_000, 1_000_000)], chunk_size(70, 25)
+    ([1, 50, 1000], 25)
     """
-    return min(max(count // CHUNKS, 1), LARGEST_CHUNK)
+    return min(max(count // CHUNKS, min(count, together)), LARGEST_CHUNK)
+
+
+def points_together(task: Task) -> int:
+    """Return how many points a worker solves in a row at least: roots of waves go from one to the next."""
+    has_waves = task.of in ("poles", "zeros") and task.model.is_distributed
+    return IN_A_ROW if has_waves and not is_large_network(task.model) else 1
 
 
 def sweep_key(task: Task, design: Design, version: str) -> str:
     """Return what tells a sweep from every other: a hash of the model, the design and the version."""
-    digest = sha256(f"{version}\n{CHUNKS}\n{fingerprint(task)}\n{design.shape}\n".encode())
+    digest = sha256(f"{version}\n{CHUNKS} {IN_A_ROW}\n{fingerprint(task)}\n{design.shape}\n".encode())
     for point in design.points:
         digest.update(";".join(map(written, point)).encode())
     return digest.hexdigest()
@@ -200,14 +209,15 @@ def run_sweep(
     executor. What the journal holds already is not solved again. ``progress`` is told how many points are
     done and how long the rest will take, by the ``clock`` [s]; ``attributes`` are kept with the result.
     """
-    chunks = range(-(-design.count // chunk_size(design.count)))
+    size = chunk_size(design.count, points_together(task))
+    chunks = range(-(-design.count // size))
     kept = {} if journal is None else {chunk: journal.read(chunk) for chunk in chunks}
     done: dict[int, Rows] = {chunk: rows for chunk, rows in kept.items() if rows is not None}
     missing = [chunk for chunk in chunks if chunk not in done]
     before = sum(len(rows["point_status"]) for rows in done.values())
     ended, start, heard = before, clock(), progress or Silent()
     pickled = pickle.dumps(task)
-    solved = _solved(pickled, design, missing, executor, AHEAD * max(workers, 1))
+    solved = _solved(pickled, design, size, missing, executor, AHEAD * max(workers, 1))
     try:
         for chunk, rows in solved:
             done[chunk] = rows
@@ -225,10 +235,14 @@ def run_sweep(
 
 
 def _solved(
-    pickled: bytes, design: Design, missing: Sequence[int], executor: Executor | None, ahead: int
+    pickled: bytes,
+    design: Design,
+    size: int,
+    missing: Sequence[int],
+    executor: Executor | None,
+    ahead: int,
 ) -> Iterator[tuple[int, Rows]]:
-    """Yield chunks as they are solved."""
-    size = chunk_size(design.count)
+    """Yield chunks of a size as they are solved."""
 
     def points(chunk: int) -> Sequence[Point]:
         return design.points[chunk * size : (chunk + 1) * size]
@@ -276,8 +290,12 @@ def _stacked(arrays: Sequence[Array]) -> Array:
         return np.concatenate(arrays)
     width = max(array.shape[1] for array in arrays)
     empty = np.nan if arrays[0].dtype.kind == "f" else 0
-    wide = [np.pad(a, ((0, 0), (0, width - a.shape[1])), constant_values=empty) for a in arrays]
-    return np.concatenate(wide)
+    whole = np.full((sum(map(len, arrays)), width), empty, arrays[0].dtype)
+    row = 0
+    for array in arrays:
+        whole[row : row + len(array), : array.shape[1]] = array
+        row += len(array)
+    return whole
 
 
 def time_left(seconds: float) -> str:

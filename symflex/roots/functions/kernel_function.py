@@ -40,6 +40,8 @@ ANYWHERE = (0.7, 1.3)  # real and imaginary part of a frequency like any other
 BRANCHES = (1, 2, 4)  # powers in which a wavenumber's branch may cease to matter; four roots have no other
 SINGLE: Final = {"wave": 2, "bending": 4}  # dispersions of one wavenumber, and how many branches it has
 TWINS: Final = {"cosh": "cos", "cos": "cosh", "sinh": "sin", "sin": "sinh"}
+# What is known of a function whatever the numbers are.
+FORM = frozenset(("cancels", "exponentials", "is_central", "is_even", "is_mirrored", "is_real"))
 MODAL_WORK = 0.15  # what sums over characteristic roots cost, in terms, over the order to the fourth
 
 
@@ -49,6 +51,9 @@ class KernelFunction:
 
     bound: BoundTransferFunction  # whose ring and kernels they are
     part: Factored  # factors of s, of wavenumbers and of kernels; entire together
+    like: KernelFunction | None = field(
+        default=None, repr=False
+    )  # with other numbers for the ring's constants
     power: int = field(default=1, init=False)
     work: int = field(default=0, init=False)
 
@@ -59,7 +64,11 @@ class KernelFunction:
         self._cost = terms + int(MODAL_WORK * sum(law.order**4 for law in laws if law.kind == "general"))
         self._values = lru_cache(maxsize=None)(self._kernel_values)
         self._sums = lru_cache(maxsize=None)(self._exponential_values)
-        self.part, self.power = self._of_one_value()
+        if self.like is None:
+            self.part, self.power = self._of_one_value()
+        else:
+            self.part, self.power = self.like.part, self.like.power
+            vars(self).update({name: x for name, x in vars(self.like).items() if name in FORM})
 
     @cached_property
     def is_even(self) -> bool:

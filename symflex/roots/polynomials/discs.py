@@ -35,6 +35,7 @@ Proposer = Callable[[acb_poly], tuple[acb, ...] | None]
 NEWTON_STEPS = 60  # each doubles the digits of a simple root; more only next to others
 GROUPING = 2.0**-30
 PELLET_DOUBLINGS = 60  # doublings of a radius until a term outweighs all others
+FEW = 12  # discs whose pairs are all compared in balls
 CENTRE_STEPS = 40  # that move a disc to the middle of its roots
 
 
@@ -139,22 +140,30 @@ def with_mirrors(discs: Sequence[Disc]) -> list[Disc]:
 
 
 def overlapping_pairs(discs: Sequence[Disc]) -> list[tuple[int, int]]:
-    """Return the pairs of discs that are not proved disjoint: by doubles if far apart, else by balls."""
+    """Return the pairs of discs that are not proved disjoint."""
+    if len(discs) <= FEW:  # arrays pay off with more
+        candidates = [(i, j) for i in range(len(discs)) for j in range(i + 1, len(discs))]
+    else:
+        candidates = _near_pairs(discs)
+    return [
+        (i, j)
+        for i, j in candidates
+        if not (discs[i].centre - discs[j].centre).abs_lower() > discs[i].radius + discs[j].radius
+    ]
+
+
+def _near_pairs(discs: Sequence[Disc]) -> Iterator[tuple[int, int]]:
+    """Yield the pairs of discs that are not disjoint by far, as doubles tell."""
     x = np.array([float(d.centre.real.mid()) for d in discs])
     y = np.array([float(d.centre.imag.mid()) for d in discs])
     r = np.array([float(d.radius.mid()) for d in discs]) * (1 + 1e-10)
     magnitude = np.hypot(x, y)
-    pairs: list[tuple[int, int]] = []
     for i in range(len(discs) - 1):
         rest = slice(i + 1, None)
         with np.errstate(invalid="ignore", over="ignore"):
             distance = np.hypot(x[rest] - x[i], y[rest] - y[i])
             far = distance > r[rest] + r[i] + 1e-13 * (magnitude[rest] + magnitude[i])
-        for j in np.nonzero(~far)[0] + i + 1:
-            gap = (discs[i].centre - discs[int(j)].centre).abs_lower()
-            if not gap > discs[i].radius + discs[int(j)].radius:
-                pairs.append((i, int(j)))
-    return pairs
+        yield from ((i, int(j)) for j in np.nonzero(~far)[0] + i + 1)
 
 
 def complete(discs: Sequence[Disc], degree: int) -> bool:

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 import symflex
+from symflex.sweep import follow as module
 from symflex.sweep import read_design
 from symflex.sweep.follow import NameOrigin, Predecessors, follow, predecessors
 from tests.unit.sweep.models import TWO_RESONANCES, oscillator
@@ -91,3 +92,22 @@ def test_a_grid_is_walked_along_its_axes():
     assert steps.before == (-1, 0, 1, 0, 3, 4, 3, 6, 7)
     assert steps.earlier == (-1, -1, 0, -1, -1, 3, 0, -1, 6)
     assert steps.ratio[2] == pytest.approx(1)  # by the logarithms of 1, 3, 9
+
+
+def test_what_is_said_of_all_points_at_once_is_what_is_said_of_each(monkeypatch):
+    """Paths that run, cross, meet the real axis, and jump: names and links are those found step by step."""
+    random = np.random.default_rng(3)
+    for _ in range(20):
+        start = np.log(random.uniform(1, 9, 4)) + 1j * random.uniform(np.pi / 2, np.pi, 4)
+        drift = random.normal(0, 0.03, (1, 4)) + 1j * random.normal(0, 0.02, (1, 4))
+        paths = start + drift * np.arange(30)[:, None] + random.normal(0, 1e-3, (30, 4))
+        s = np.exp(paths.real + 1j * np.clip(paths.imag, 0, np.pi))
+        s = np.take_along_axis(s, np.argsort(np.abs(s), axis=1), axis=1)
+        steps = Predecessors(tuple(range(30)), tuple(range(-1, 29)), (-1, -1, *range(28)), (1.0,) * 30)
+        family = np.zeros(30, np.int64)
+        at_once = follow(s, family, steps)
+        monkeypatch.setattr(module, "_in_order", lambda logarithms, count, steps: np.zeros(len(count), bool))
+        one_by_one = follow(s, family, steps)
+        monkeypatch.undo()
+        assert at_once.mode.tolist() == one_by_one.mode.tolist()
+        assert at_once.link.tolist() == one_by_one.link.tolist()

@@ -14,7 +14,7 @@ import symflex
 from symflex.errors import BudgetError, UsageError
 from symflex.sweep import chunk_size, read_design, run_sweep, sweep_key, sweep_task
 from symflex.sweep.files import npz_bytes, open_journal
-from symflex.sweep.run import open_pool
+from symflex.sweep.run import IN_A_ROW, open_pool
 from tests.house.repository import ROOT
 from tests.unit.sweep.models import LOOP, SLIDING_FREE, oscillator
 
@@ -165,7 +165,7 @@ def test_margins_are_what_routh_says():
 
 # --------------------------------------------------------------------------- processes, kills and clusters
 
-POINTS = 400
+POINTS = 2000
 ARGUMENTS = ["--over", "E=+-5%", "--over", "l=+-2%", "--monte-carlo", str(POINTS), "--modes", "6"]
 
 
@@ -191,12 +191,12 @@ def test_a_sweep_that_is_killed_goes_on_to_the_same_bytes(tmp_path):
         command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
     ) as p:
         for _ in range(6000):
-            if len(list(journal.glob("chunk-*.npz"))) >= 60 or p.poll() is not None:
+            if len(list(journal.glob("chunk-*.npz"))) >= 20 or p.poll() is not None:
                 break
             time.sleep(0.01)
         p.send_signal(signal.SIGKILL)
     kept = {path.name: path.stat().st_mtime_ns for path in journal.glob("chunk-*.npz")}
-    assert 0 < len(kept) < POINTS // chunk_size(POINTS)
+    assert 0 < len(kept) < POINTS // chunk_size(POINTS, IN_A_ROW)
     assert not (tmp_path / "killed.nc").exists()
     assert run(tmp_path, "killed.nc", "--workers", "2") == expected
     assert not journal.exists()

@@ -25,7 +25,7 @@ def test_without_a_region_the_models_own_is_searched():
         ('[analysis]\nband = ["1 Hz", "9 Hz"]', Band(Fraction(1), Fraction(9))),
     ]:
         model = pipeline.loads(ROD + analysis)
-        assert default_region(pipeline.derive_bound(model, model.transfer_functions)[0]) == region, analysis
+        assert default_region(model) == region, analysis
 
 
 def test_wavenumbers_vanish_where_their_law_does():
