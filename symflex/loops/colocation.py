@@ -104,14 +104,7 @@ def dynamic_colocation(
     SF805 different inputs, outputs of different units, or tolerances out of range; SF804 no band; SF402 one
     of the functions is identically zero.
     """
-    if tip.source.input.name != joint.source.input.name:
-        message = f"{tip.name} and {joint.name} have different inputs"
-        raise UsageError(Diagnostic("SF805", message, None, "compare two outputs of one input"))
-    units = [bound.source.unit for bound in (tip, joint)]
-    if units[0] != units[1]:
-        message = f"{tip.name} is in [{units[0]}] and {joint.name} in [{units[1]}]"
-        hint = 'compare outputs of one unit; an angle times its lever is a displacement: "h*phi"'
-        raise UsageError(Diagnostic("SF805", message, None, hint))
+    _check_comparable(tip, joint)
     if not 0 < phase < 90 or not magnitude > 0:  # noqa: PLR2004 (degrees)
         message = "the phase tolerance must be between 0 and 90 degrees, the magnitude tolerance above 0 dB"
         raise UsageError(Diagnostic("SF805", message))
@@ -123,9 +116,6 @@ def dynamic_colocation(
     if not 0 < low < high < inf:
         message = f"a band runs from a positive to a higher frequency, not from {low:g} to {high:g} Hz"
         raise UsageError(Diagnostic("SF804", message))
-    for bound in (tip, joint):
-        if bound.ratio.is_zero:
-            raise ModelError(Diagnostic("SF402", f"{bound.name} is identically zero"))
     within = partial(_state, _ratio(tip, joint), phase, magnitude)
     first = _first_exit(within, low, high)
     return DynamicColocation(
@@ -139,6 +129,21 @@ def dynamic_colocation(
         first.cause,
         first.begins,
     )
+
+
+def _check_comparable(tip: BoundTransferFunction, joint: BoundTransferFunction) -> None:
+    """Refuse functions of different inputs or units, and those that are zero."""
+    if tip.source.input.name != joint.source.input.name:
+        message = f"{tip.name} and {joint.name} have different inputs"
+        raise UsageError(Diagnostic("SF805", message, None, "compare two outputs of one input"))
+    units = [bound.source.unit for bound in (tip, joint)]
+    if units[0] != units[1]:
+        message = f"{tip.name} is in [{units[0]}] and {joint.name} in [{units[1]}]"
+        hint = 'compare outputs of one unit; an angle times its lever is a displacement: "h*phi"'
+        raise UsageError(Diagnostic("SF805", message, None, hint))
+    for bound in (tip, joint):
+        if bound.ratio.is_zero:
+            raise ModelError(Diagnostic("SF402", f"{bound.name} is identically zero"))
 
 
 def _ratio(tip: BoundTransferFunction, joint: BoundTransferFunction) -> Callable[[acb], acb]:

@@ -85,6 +85,11 @@ def find_stable_gains(
     parts = _parts(loop, limits, up_to)
     if parts.why_not:
         return _at_nominal(loop, parts.limits, digits, parts.why_not)
+    return _searched(loop, parts, digits, has_loop_gain=has_loop_gain and not root)
+
+
+def _searched(loop: AnyLoop, parts: _GainSearch, digits: int, *, has_loop_gain: bool) -> StabilityMap:
+    """Return for which gains a loop is stable, from where its poles cross the axis."""
     lumped, along = parts.lumped, parts.along
     try:
         if along is not None and along.is_mirrored:
@@ -102,10 +107,11 @@ def find_stable_gains(
     stability = _map_of(loop, parts, boundaries, intervals, digits)
     # What all gains leave open may be known of one: terms outweigh one another, or the loop is passive.
     # What is said of a range does not prove one gain of it where next to s = 0 poles are not followed.
-    is_open = stability.verdict.word == "unknown" or (root and along is not None and along.reasons)
+    has_root = not isinstance(loop, NetworkLoop) and loop.bound.root
+    is_open = stability.verdict.word == "unknown" or (has_root and along is not None and along.reasons)
     if loop.nominal is not None and parts.end is None and is_open:
         stability = replace(stability, at_nominal=_verdict_at(loop, loop.nominal))
-    loop_gain = _loop_gain(loop, along, digits + GUARD_DIGITS) if has_loop_gain and not root else None
+    loop_gain = _loop_gain(loop, along, digits + GUARD_DIGITS) if has_loop_gain else None
     margins, unknown = Margins(gain_margins(stability)), list[str]()
     if loop_gain is not None:
         margins, unknown = _margins(stability, parts, loop_gain, margins)

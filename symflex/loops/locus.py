@@ -31,6 +31,7 @@ from symflex.transfer import BoundTransferFunction
 from symflex.transfer.equations_at import EssentialSingularityError
 
 Traceable = LoopFunction | LoopInDisc  # what poles are followed in
+Branch = tuple[complex, ...]  # a curve [rad/s] along which a pole goes
 DEFAULT_MODES = 5
 STEPS = 120  # gains in all, close at the beginning: a step is then 10 % longer than the last
 FIRST_SHARE = 1e-5  # the first step, of the whole range
@@ -56,10 +57,10 @@ class RootLocus:
     limits: tuple[Fraction, Fraction]  # first and last value
     start: PoleZeroMap  # start and end: poles at these, and the zeros the poles go to, proved
     end: PoleZeroMap
-    branches: tuple[tuple[complex, ...], ...]  # curves [rad/s] from poles at first; not proved
+    branches: tuple[Branch, ...]  # curves from poles at first; not proved
     arrived: bool  # every curve ends next to a certified pole at the last gain, and no two at the same
     ends: tuple[complex, ...] = ()  # certified poles at last [rad/s] to which any curve goes
-    entering: tuple[tuple[complex, ...], ...] = ()  # from nowhere marked, to last poles
+    entering: tuple[Branch, ...] = ()  # from nowhere marked, to last poles
     nominal: tuple[Fraction, PoleZeroMap] | None = None  # the gain and its poles, if within
 
     def __repr__(self) -> str:
@@ -183,41 +184,7 @@ def trace_locus(
     start = closed_loop_roots(loop, low, region)
     end = closed_loop_roots(loop, high, wider)
     spend()  # a search that ends with its time returns what it proved, perhaps nothing
-    function = _traceable(loop, (*start.all_poles, *end.all_poles))
-    poles, final = _points(start.all_poles), _points(end.all_poles)
-    bottom, top = float(low), float(high)
-    goals = _goals(bottom, top)
-    resting = (0j,) * (_shared_at_zero(function, poles) if isinstance(function, LoopFunction) else 0)
-    early = _trace(function, poles, bottom, goals[:1], resting)
-    first = [branch[-1] for branch in early]
-    later = _trace(function, first, goals[0], goals[1:], resting)
-    forward = [one + other[1:] for one, other in zip(early, later, strict=True)]
-    # Of a loop with kernels, poles beyond those proved at the last gain are not compared, nor those where
-    # poles accumulate, which no search exhausts.
-    reach = max((abs(s) for s in _points(end.poles)), default=0.0) if is_endless else inf
-    ends: list[complex] = []
-    branches: list[tuple[complex, ...]] = []
-    for branch in forward:
-        last = branch[-1]
-        is_known = _nearest(final, last) is not None
-        is_lost = not is_known and _is_among(end.excluded, last)
-        if is_known or (not is_lost and abs(last) < reach):
-            ends.append(last)
-        branches.append(tuple(_before(end.excluded, branch) if is_lost else branch))
-    matched = _matched(ends, final)
-    lowest = [True] * len(final) if region is None else _lowest(end, wanted)
-    kept = [s for i, s in enumerate(final) if lowest[i] or (matched is not None and i in matched)]
-    entering: list[tuple[complex, ...]] = []
-    if matched is not None and len(kept) > len(matched):
-        # Both members of a pair are followed, as where they part one of them may come from a marked pole.
-        back = _trace(function, kept, top, [*reversed(goals[:-1])], resting)
-        ended = {final[i] for i in matched}
-        for s, branch in zip(kept, back, strict=True):
-            near = _nearest(first, branch[-1])
-            if near is None:
-                entering.append(tuple(reversed(_before(end.excluded, branch))))
-            elif s not in ended:
-                branches.append((poles[near], *reversed(branch)))
+    branches, matched, kept, entering = _followed(loop, (low, high), start, end, wanted if region else None)
     nominal = None
     if loop.nominal is not None and low < loop.nominal < high:
         nominal = loop.nominal, closed_loop_roots(loop, loop.nominal, region)
@@ -232,6 +199,61 @@ def trace_locus(
         tuple(entering),
         nominal,
     )
+
+
+def _followed(
+    loop: AnyLoop, ends: tuple[Fraction, Fraction], start: PoleZeroMap, end: PoleZeroMap, wanted: int | None
+) -> tuple[list[Branch], set[int] | None, list[complex], list[Branch]]:
+    """Return branches from the first gain, which last poles they reach, these, and branches that enter.
+
+    ``None`` in place of the poles reached if branches and proved poles do not match. ``wanted`` are the modes
+    that are shown of a loop with kernels.
+    """
+    function = _traceable(loop, (*start.all_poles, *end.all_poles))
+    poles, final = _points(start.all_poles), _points(end.all_poles)
+    bottom, top = map(float, ends)
+    goals = _goals(bottom, top)
+    resting = (0j,) * (_shared_at_zero(function, poles) if isinstance(function, LoopFunction) else 0)
+    early = _trace(function, poles, bottom, goals[:1], resting)
+    first = [branch[-1] for branch in early]
+    later = _trace(function, first, goals[0], goals[1:], resting)
+    forward = [one + other[1:] for one, other in zip(early, later, strict=True)]
+    branches, reached = _as_far_as_proved(forward, end, final, is_endless=wanted is not None)
+    matched = _matched(reached, final)
+    lowest = [True] * len(final) if wanted is None else _lowest(end, wanted)
+    kept = [s for i, s in enumerate(final) if lowest[i] or (matched is not None and i in matched)]
+    entering: list[Branch] = []
+    if matched is not None and len(kept) > len(matched):
+        # Both members of a pair are followed, as where they part one of them may come from a marked pole.
+        back = _trace(function, kept, top, [*reversed(goals[:-1])], resting)
+        ended = {final[i] for i in matched}
+        for s, branch in zip(kept, back, strict=True):
+            near = _nearest(first, branch[-1])
+            if near is None:
+                entering.append(tuple(reversed(_before(end.excluded, branch))))
+            elif s not in ended:
+                branches.append((poles[near], *reversed(branch)))
+    return branches, matched, kept, entering
+
+
+def _as_far_as_proved(
+    forward: Sequence[list[complex]], end: PoleZeroMap, final: Sequence[complex], *, is_endless: bool
+) -> tuple[list[Branch], list[complex]]:
+    """Return branches up to where poles accumulate, and the poles that they reach at the last gain.
+
+    Of a loop with kernels, poles beyond those proved at the last gain are not compared, nor those where poles
+    accumulate, which no search exhausts.
+    """
+    reach = max((abs(s) for s in _points(end.poles)), default=0.0) if is_endless else inf
+    branches, reached = list[Branch](), list[complex]()
+    for branch in forward:
+        last = branch[-1]
+        is_known = _nearest(final, last) is not None
+        is_lost = not is_known and _is_among(end.excluded, last)
+        if is_known or (not is_lost and abs(last) < reach):
+            reached.append(last)
+        branches.append(tuple(_before(end.excluded, branch) if is_lost else branch))
+    return branches, reached
 
 
 def _shared_at_zero(function: LoopFunction, poles: Sequence[complex]) -> int:

@@ -23,7 +23,7 @@ from math import pi
 
 from flint import acb, arb
 
-from symflex.balls import Open, ball, bits_for_digits, branch, precision, status_of, two_steps
+from symflex.balls import Branching, Open, ball, bits_for_digits, branch, precision, status_of, two_steps
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.expressions import names_among
 from symflex.loops.boxes import BITS, Box, CharacteristicFunction, Ends, OpenBox
@@ -72,19 +72,10 @@ def stability_over(
     range that is needed or empty; ModelError: SF801 if no pole depends on a parameter, or it cannot be
     followed; SF501, SF502 if the characteristic function is too large.
     """
-    names = tuple(given.over)
-    if len(names) > 2 or len(set(names)) < len(names):  # noqa: PLR2004 (a chart has two axes)
-        raise UsageError(Diagnostic("SF902", "give one or two parameters, each once: --over K --over T"))
-    if given.up_to is not None and len(names) > 1:
-        hint = "ask for one parameter: --over P --up-to FREQUENCY"
-        raise UsageError(Diagnostic("SF902", "--up-to does not apply to a chart", None, hint))
+    names = _checked_names(given)
     up_to = None if given.up_to is None else 2 * pi * highest_frequency(given.up_to)
     model = with_values(model, values)
     parameters = [pick_gain(model.parameters, name) for name in names]
-    if spare := [name for name, *_ in given.ranges if name not in names]:
-        raise UsageError(
-            Diagnostic("SF902", f"a range of '{spare[0][:64]}', which is not asked for with --over")
-        )
     limits = tuple(_limits(model, p, given) for p in parameters)
     nominal = [None if p.value is None else p.value.nearly for p in parameters]
     digits = given.digits or model.analysis.digits or 15
@@ -115,6 +106,20 @@ def stability_over(
         return halved
     exact = exact or of_rational(model, names[0], limits[0], digits, up_to, has_pairs=True)
     return exact.of_parameter if exact is not None and exact.intervals else halved
+
+
+def _checked_names(given: StabilityOptions) -> tuple[str, ...]:
+    """Return the parameters that are asked for; SF902 for too many, or options that apply to none."""
+    names = tuple(given.over)
+    if len(names) > 2 or len(set(names)) < len(names):  # noqa: PLR2004 (a chart has two axes)
+        raise UsageError(Diagnostic("SF902", "give one or two parameters, each once: --over K --over T"))
+    if given.up_to is not None and len(names) > 1:
+        hint = "ask for one parameter: --over P --up-to FREQUENCY"
+        raise UsageError(Diagnostic("SF902", "--up-to does not apply to a chart", None, hint))
+    if spare := [name for name, *_ in given.ranges if name not in names]:
+        message = f"a range of '{spare[0][:64]}', which is not asked for with --over"
+        raise UsageError(Diagnostic("SF902", message))
+    return names
 
 
 def _end_inside(function: CharacteristicFunction, limits: Ends) -> float | str:
@@ -201,14 +206,34 @@ def find_intervals(
     nominal: Fraction | None,
 ) -> StabilityMap:
     """Return for which values of one parameter a model is stable, the ends enclosed to so many digits."""
-    bits, reasons = bits_for_digits(digits) + BITS, list[str]()
+    bits = bits_for_digits(digits) + BITS
+    parts, gaps, wide, reasons = _free_parts(function, limits, digits, bits)
+    counted, unknown = _counted(function, parts, (*gaps, *wide), limits, bits)
+    reasons += unknown
+    boundaries, intervals = _boundaries(function, counted, gaps, wide, limits, digits, reasons)
+    stability = replace(
+        _map_of(function, limits, digits, parameter, nominal),
+        boundaries=boundaries,
+        intervals=intervals,
+        is_complete=bool(intervals) or not reasons,
+        reasons=tuple(dict.fromkeys(reasons)),
+    )
+    if nominal is not None and (stability.verdict.word == "unknown" or function.tf.hidden):
+        stability = replace(stability, at_nominal=count_at(function, (parameter.value or nominal,))[0])
+    return replace(stability, margins=Margins(gain_margins(stability)))
+
+
+def _free_parts(
+    function: CharacteristicFunction, limits: Ends, digits: int, bits: int
+) -> tuple[list[Ends], list[OpenBox], list[OpenBox], list[str]]:
+    """Return parts in which no pole meets the axis, gaps as narrow as the digits, wider ones, and why."""
     decided: list[Ends] = []
     gaps: list[OpenBox] = []
 
     def decide(row: Row) -> Row | Open[Row] | None:
         if len(row) > MOST_GAPS:
             return row
-        left = []
+        remaining = []
         for box in row:
             narrowed = function.narrowed(box, bits) if box.is_bounded else box
             if narrowed.is_bounded and not any(narrowed.pieces):
@@ -216,8 +241,8 @@ def find_intervals(
             elif _is_narrow(box.box[0], limits, digits):
                 gaps.append(narrowed)
             else:
-                left.append(narrowed)
-        return Open(left) if left else None
+                remaining.append(narrowed)
+        return Open(remaining) if remaining else None
 
     def halves(row: Row) -> list[Row]:
         parts = [half for box in row for half in function.halves(box)]
@@ -225,6 +250,7 @@ def find_intervals(
         return [[box for box in parts if low <= box.box[0][0] < high] for low, high in touching]
 
     search = branch([[function.whole((limits,))]], decide, halves, order="breadth", keeps=True)
+    reasons = []
     for row in search.decided:
         ends = f"{float(row[0].box[0][0]):.6g} and {float(row[-1].box[0][1]):.6g}"
         reasons.append(f"it could not be decided whether poles meet the axis between {ends}")
@@ -239,11 +265,22 @@ def find_intervals(
     # Slivers between open parts are left to these.
     slim = Fraction(1, SLIVER)
     parts = [(a, b) for a, b in _joined(decided) if not _is_narrow((a, a + (b - a) * slim), limits, digits)]
-    counted: list[Interval] = []
+    return parts, gaps, wide, reasons
+
+
+def _counted(
+    function: CharacteristicFunction,
+    parts: Sequence[Ends],
+    gaps: Sequence[OpenBox],
+    limits: Ends,
+    bits: int,
+) -> tuple[list[Interval], list[str]]:
+    """Return parts with the poles in each, as far as they are proved, and why they are not."""
+    counted, reasons = list[Interval](), list[str]()
     count: PoleCount | None = None
     for before, part in pairwise([limits, *parts]):
-        own = [gap for gap in (*gaps, *wide) if before[1] <= gap.box[0][0] < part[0]]
-        change = 0 if count is None else pair_that_crosses(function, own, (before[0], part[1]), bits)
+        between = [gap for gap in gaps if before[1] <= gap.box[0][0] < part[0]]
+        change = 0 if count is None else pair_that_crosses(function, between, (before[0], part[1]), bits)
         if count and change:
             count = PoleCount(count.right + change, count.axis)
         else:
@@ -252,17 +289,7 @@ def find_intervals(
             count = count or _counted_to_the_end(function, limits, part, bits)
             reasons += [verdict.reason] if count is None else []
         counted += [(part, count)] if count else []
-    boundaries, intervals = _boundaries(function, counted, gaps, wide, limits, digits, reasons)
-    stability = replace(
-        _map_of(function, limits, digits, parameter, nominal),
-        boundaries=boundaries,
-        intervals=intervals,
-        is_complete=bool(intervals) or not reasons,
-        reasons=tuple(dict.fromkeys(reasons)),
-    )
-    if nominal is not None and (stability.verdict.word == "unknown" or function.tf.hidden):
-        stability = replace(stability, at_nominal=count_at(function, (parameter.value or nominal,))[0])
-    return replace(stability, margins=Margins(gain_margins(stability)))
+    return counted, reasons
 
 
 def _counted_to_the_end(
@@ -298,25 +325,13 @@ def find_intervals_up_to(
         until=lambda _, waiting: waiting > MOST_PARTS,
         keeps=True,
     )
-    narrow = len(search.undecided) - search.unseen - (search.over is not None)
-    bare = [part for part in search.undecided[:narrow] if poles.is_bare(part.ends)]
-    gaps = [part for part in search.undecided[:narrow] if part not in bare]
-    wide = search.undecided[narrow:]
-    reasons = [reason]
-    for low, high in _joined([part.ends for part in bare]):
-        near = f"between {float(low):.6g} and {float(high):.6g} a wave equation nearly loses its"
-        reasons.append(f"{near} highest derivative: its waves are ever shorter there, and poles ever more")
-    if search.over is not None:
-        reasons.append(search.over.message)
-    elif wide:
-        open_parts = sorted(part.ends for part in wide)
-        ends = f"{float(open_parts[0][0]):.6g} and {float(open_parts[-1][1]):.6g}"
-        reasons.append(f"it could not be decided whether poles leave the axis between {ends}")
+    gaps, wide, reasons = _open_parts(poles, search)
+    reasons.insert(0, reason)
     counted, uncounted = _counted_up_to(poles, sorted(search.decided, key=lambda part: part.ends))
     reasons += [f"poles could not be counted near {float(ends[0]):.6g}" for ends in uncounted]
     radius = float(poles.radius)
     boxes = [OpenBox((part.ends,), radius, poles.frequencies(part)) for part in gaps]
-    rest = [OpenBox((ends,), radius) for ends in (*(part.ends for part in (*bare, *wide)), *uncounted)]
+    rest = [OpenBox((ends,), radius) for ends in (*(part.ends for part in wide), *uncounted)]
     boundaries, intervals = _boundaries(function, counted, boxes, rest, limits, digits, reasons)
     return replace(
         _map_of(function, limits, digits, parameter, nominal),
@@ -326,6 +341,26 @@ def find_intervals_up_to(
         is_complete=False,
         reasons=tuple(dict.fromkeys(reasons)),
     )
+
+
+def _open_parts(
+    poles: PolesUpTo, search: Branching[OpenPart, OpenPart]
+) -> tuple[list[OpenPart], list[OpenPart], list[str]]:
+    """Return parts as narrow as the digits, wider ones in which poles may leave the axis, and why."""
+    narrow = len(search.undecided) - search.unseen - (search.over is not None)
+    wide, reasons = search.undecided[narrow:], list[str]()
+    bare = [part for part in search.undecided[:narrow] if poles.is_bare(part.ends)]
+    gaps = [part for part in search.undecided[:narrow] if part not in bare]
+    for low, high in _joined([part.ends for part in bare]):
+        near = f"between {float(low):.6g} and {float(high):.6g} a wave equation nearly loses its"
+        reasons.append(f"{near} highest derivative: its waves are ever shorter there, and poles ever more")
+    if search.over is not None:
+        reasons.append(search.over.message)
+    elif wide:
+        ends = sorted(part.ends for part in wide)
+        between = f"{float(ends[0][0]):.6g} and {float(ends[-1][1]):.6g}"
+        reasons.append(f"it could not be decided whether poles leave the axis between {between}")
+    return gaps, [*bare, *wide], reasons
 
 
 def _map_of(

@@ -21,7 +21,7 @@ from itertools import count
 
 from flint import acb
 
-from symflex.balls import Open, branch, precision
+from symflex.balls import Branching, Open, branch, precision
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError, UsageError
 from symflex.loops.boxes import BITS, Box, CharacteristicFunction, OpenBox
 from symflex.loops.chart import Word, count_at, located_at
@@ -144,31 +144,7 @@ def find_spread(
         for s in sorted(poles, key=lambda s: (reach(function, s, box)[0] + s).real)[-FOLLOWED:]:
             if (unstable := _pushed(function, s, box, result, tried)) is not None:
                 return unstable
-        numbers = count(1)
-
-        def decide(each: OpenBox) -> SpreadStability | Open[OpenBox] | None:
-            number = next(numbers)
-            if not each.is_bounded:
-                return Open(each)
-            each = function.narrowed(each)
-            if not any(each.pieces):
-                return None
-            if number in TRIES:
-                low, high = next(pieces[-1] for pieces in each.pieces if pieces)
-                s = complex(0, float(low + high) / 2)
-                if (unstable := _pushed(function, s, each.box, result, tried)) is not None:
-                    return unstable
-            return Open(each)
-
-        search = branch(
-            [function.whole(box)],
-            decide,
-            function.halves,
-            order="breadth",
-            most=MOST_BOXES,
-            until=lambda found, _: bool(found.decided),
-            keeps=True,
-        )
+        search = _searched(function, box, result, tried)
     except BudgetError as error:
         return replace(result, reason=error.diagnostics[0].message, open_box=box)
     except SymflexError as error:
@@ -177,11 +153,42 @@ def find_spread(
         return search.decided[0]
     if not search.undecided:
         return replace(result, word="stable", boxes=search.spent)
-    left, boxes = len(search.undecided), search.spent - (search.over is not None)
+    undecided, boxes = len(search.undecided), search.spent - (search.over is not None)
     ends = (str(each.radius) for each in search.undecided if not each.is_bounded)
-    reason = next(ends, f"poles may meet the axis in {left} of {boxes + left} boxes")
+    reason = next(ends, f"poles may meet the axis in {undecided} of {boxes + undecided} boxes")
     reason = search.over.message if search.over else reason
     return replace(result, boxes=boxes, open_box=search.undecided[0].box, reason=reason)
+
+
+def _searched(
+    function: CharacteristicFunction, box: Box, result: SpreadStability, tried: set[Point]
+) -> Branching[OpenBox, SpreadStability]:
+    """Return boxes on which poles may meet the axis, or a point that is proved unstable."""
+    numbers = count(1)
+
+    def decide(each: OpenBox) -> SpreadStability | Open[OpenBox] | None:
+        number = next(numbers)
+        if not each.is_bounded:
+            return Open(each)
+        each = function.narrowed(each)
+        if not any(each.pieces):
+            return None
+        if number in TRIES:
+            low, high = next(pieces[-1] for pieces in each.pieces if pieces)
+            s = complex(0, float(low + high) / 2)
+            if (unstable := _pushed(function, s, each.box, result, tried)) is not None:
+                return unstable
+        return Open(each)
+
+    return branch(
+        [function.whole(box)],
+        decide,
+        function.halves,
+        order="breadth",
+        most=MOST_BOXES,
+        until=lambda found, _: bool(found.decided),
+        keeps=True,
+    )
 
 
 def _pushed(

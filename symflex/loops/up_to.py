@@ -294,7 +294,7 @@ class PolesUpTo:
         """Tell whether no pole meets an arc in the right half-plane for any value in a part."""
         try:
             for factor in self._moving:
-                self._without_root(values, factor, arc)
+                self._pieces(values, factor, arc)
         except UndecidedError:
             return False
         return True
@@ -375,7 +375,7 @@ class PolesUpTo:
         arc, axis = self._path("arc", circle), self._path("axis", circle)
         turn = self._turn(values, factor, arc)
         if self._are_even[factor]:
-            pieces = self._with_one_root(values, factor, axis)
+            pieces = self._pieces(values, factor, axis, most=1)
             crossed = sum(bool(self._ratio(values, factor, axis, each).real < 0) for each in pieces)
             whole = (2 * turn / arb.pi()).unique_fmpz()
             right = -1 if whole is None else int(whole) - 2 * crossed  # twice as many
@@ -385,7 +385,7 @@ class PolesUpTo:
 
     def _turn(self, values: PartValues, factor: int, path: Path) -> arb:
         """Return how far a factor turns on a path, on each piece of which it has no root."""
-        pieces = self._without_root(values, factor, path)
+        pieces = self._pieces(values, factor, path)
         with precision(self.bits):
             return sum((self._ratio(values, factor, path, each).arg() for each in pieces), arb(0))
 
@@ -398,25 +398,19 @@ class PolesUpTo:
             raise UndecidedError
         return ratio
 
-    def _without_root(self, values: PartValues, factor: int, path: Path) -> list[Piece]:
-        """Return pieces of a path on which a factor is proved to have no root; UndecidedError if it may."""
+    def _pieces(self, values: PartValues, factor: int, path: Path, most: Literal[0, 1] = 0) -> list[Piece]:
+        """Return pieces of a path on which a factor is proved to have no root; UndecidedError if it may.
+
+        On the axis, where it is real, each may have at ``most`` one, which is simple.
+        """
         first, last = values.ends
 
         def decide(low: float, high: float) -> bool | None:
             found = self._bound(values, factor, path, (Fraction(low), Fraction(high)))
-            if found.may_vanish and found.is_as_sharp_as_the_part and first < last:
+            has_more = found.may_vanish and (found.may_turn or not most)
+            if has_more and found.is_as_sharp_as_the_part and first < last:
                 raise UndecidedError  # no shorter piece serves
-            return not found.may_vanish or None
-
-        pieces = covered(decide, path.cells, SHORTEST)
-        return [(Fraction(low), Fraction(high)) for low, high, _ in pieces]
-
-    def _with_one_root(self, values: PartValues, factor: int, path: Path) -> list[Piece]:
-        """Return pieces of the axis on which a factor that is real there has one simple root at most."""
-
-        def decide(low: float, high: float) -> bool | None:
-            found = self._bound(values, factor, path, (Fraction(low), Fraction(high)))
-            return not (found.may_vanish and found.may_turn) or None
+            return not has_more or None
 
         pieces = covered(decide, path.cells, SHORTEST)
         return [(Fraction(low), Fraction(high)) for low, high, _ in pieces]

@@ -680,3 +680,13 @@ def test_a_frame_member_stands_at_any_angle():
     assert [float(b.gain) for b in found.boundaries] == pytest.approx([acos(400 / (1200 * 0.5))], rel=1e-12)
     assert [b.entering for b in found.boundaries] == [-1]
     assert found.certified
+
+
+@pytest.mark.slow
+def test_where_nothing_is_decided_a_stable_range_ends_where_it_is_proved() -> None:
+    # 1 + K s exp(-s T)/(s + 1): from K = 1 on the delayed term outweighs s (Bellman and Cooke 1963).
+    signals = {"y": "K*s*exp(-0.5*s)/(s + 1)*(r - y)"}
+    model = Model(parameters={"K": 0.3}, signals=signals, inputs={"r": {}}, outputs={"Y": "y"})
+    found = model.stability(over="K", limits=(0, 3))
+    (stable,) = found.proved.intervals
+    assert stable.poles.is_stable and 0.9 < float(stable.high.upper()) <= 1
