@@ -27,10 +27,10 @@ if TYPE_CHECKING:
     from symflex.along.minors import Minor, MinorSums
 
 BUCKET = 64  # bits are rounded up to a multiple of this, so that few matrices are expanded
-FEWEST_BITS = 192  # least precision of an expansion, for roots of 30 digits; half saves a third of the time
+FEWEST_BITS = 256  # least precision of an expansion: circles are sampled with up to 230, 30 digits take 192
 LOW = 8.0  # power of e of waves below which no expansion is made for a smaller s alone: some three modes
 BESIDE_MODES = 1  # half waves that motion of a body as a whole, and masses at ends, may take besides
-BEYOND_MODES = 1.2  # how far beyond the last root circles are drawn on which roots are counted [in s]
+BEYOND_MODES = 3.0  # how far steps of circles that roots are counted on reach, over the last mode's frequency
 FURTHER = 1.5
 """How much further than asked for an expansion reaches [in s], so that not every mode needs another.
 
@@ -107,6 +107,8 @@ class VaryingMatrices:
         """Tell that values are wanted for abs(s) up to a size and so many modes, so one expansion serves."""
         waves = pi * (modes + BESIDE_MODES) if modes else 0.0
         low, high = -HIGHEST_OCTAVE * PARTS, HIGHEST_OCTAVE * PARTS
+        # What a tension makes grow at rest are no waves.
+        waves += sum(self._at_rest) if waves else 0.0
         while waves and high - low > 1:
             middle = (low + high) // 2
             grows = sum(law.growth_at(middle, PARTS) for law in self.laws) > waves
@@ -120,7 +122,7 @@ class VaryingMatrices:
         # One for larger frequencies, or with more bits, serves as well.
         if not fitting:
             if matrix not in self._lowest:
-                self._lowest[matrix] = self._lowest_octave(law)
+                self._lowest[matrix] = self._lowest_octave(matrix)
             wanted = abs(at_centre(law.rate(acb(0, self._expected.get(0, 0.0))))).upper()
             if not size <= wanted:
                 wanted = (size * FURTHER ** (law.step * min(max(len(known), 1), FURTHEST))).upper()
@@ -130,11 +132,15 @@ class VaryingMatrices:
             known.append((largest, bits, fitting[0]))
         return fitting[0]
 
-    @staticmethod
-    def _lowest_octave(law: BoundLaw) -> int:
-        """Return the logarithm of the least abs(s) that an expansion is made for."""
+    @cached_property
+    def _at_rest(self) -> tuple[float, ...]:
+        """By which power of e the solutions of each law grow at rest."""
         # Next to rest, as states in a chain have no scales of their own at s = 0.
-        at_rest = law.growth(arb(2) ** -HIGHEST_OCTAVE)
+        return tuple(law.growth_at(-HIGHEST_OCTAVE * PARTS, PARTS) for law in self.laws)
+
+    def _lowest_octave(self, matrix: int) -> int:
+        """Return the logarithm of the least abs(s) that an expansion is made for."""
+        law, at_rest = self.laws[matrix], self._at_rest[matrix]
         low, high = -HIGHEST_OCTAVE, HIGHEST_OCTAVE
         while high - low > 1:
             middle = (low + high) // 2

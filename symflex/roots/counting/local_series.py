@@ -111,10 +111,12 @@ def bound_on_circle(function: Entire, centre: acb, reach: arb, arcs: int) -> arb
         disc = centre + acb(arb(0, reach), arb(0, reach))
         if not function.is_analytic_on(disc, WIDE_BITS):
             return None
+        # The farthest arc is first: what is expanded in powers of s is expanded once for all of them.
+        outwards = centre.mid().arg().mid() if centre.mid() != 0 else arb(0)
 
         def size_on(low: float, high: float) -> arb | None:
             half = (arb.pi() * (high - low)).upper()
-            direction = (acb(0, 1) * (arb.pi() * (low + high) + arb(0, half))).exp()
+            direction = (acb(0, 1) * (outwards + arb.pi() * (low + high) + arb(0, half))).exp()
             value = function.value(centre + reach * direction, WIDE_BITS)
             return abs(value).upper() if value.is_finite() else None
 
