@@ -44,6 +44,7 @@ class Effort:
     first_modes: tuple[int, int] = (16, 32)  # modes whose bounds decide how many more are needed
     axis_modes: int = 2000  # on the axis: velocities fall off so slowly that no number is enough
     plane_modes: int = 100  # where each is searched in the plane: that takes some seconds
+    far_modes: int = 200  # below the radius from which on a bound is known: 350 of a frame cost 25 s, in vain
     continued_modes: int = 5000  # where those before point to the next: a millisecond or two each
     slow_modes: int = 1000  # where even these would not do
     long: int = 100  # exponentials of a function of which no more are searched than at first: a frame has 274

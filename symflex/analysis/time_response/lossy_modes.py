@@ -99,13 +99,18 @@ def lossy_bound(bound: BoundTransferFunction, integrations: int) -> tuple[LossyB
     function = SizeOfExponentials.of(bound)
     if function is None:
         return Refused("it is not a short sum of exponentials")
-    start = KernelFunction(bound, bound.den).frequency_of(1.0)
-    bounds = []
+    denominator = KernelFunction(bound, bound.den)
+    # About as many half waves as modes.
+    start, far = (denominator.frequency_of(growth) for growth in (1.0, pi * EFFORT.far_modes))
+    bounds, is_damped = list[LossyBound](), False
     for sectors in (TILTED, SECTORS):
         far_out = FunctionFarOut.of(bound, sectors)
-        least = None if far_out is None else far_out.least(start)
-        if far_out is not None and least is not None:
-            bounds.append(LossyBound(function, far_out, log(least)))
-    if not bounds:
+        if far_out is not None and far_out.size(VAST) is not None:
+            is_damped = True
+            least = None if far_out.size(far) is None else far_out.least(start)
+            bounds += [] if least is None else [LossyBound(function, far_out, log(least))]
+    if not is_damped:
         return Refused("some waves have no material damping")
+    if not bounds:
+        return Refused("a bound on poles is known only beyond very many modes")
     return bounds[-1 if bounds[0].least > bounds[-1].least + log(FAR) else 0], integrations

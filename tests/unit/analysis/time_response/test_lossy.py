@@ -187,3 +187,19 @@ def test_more_modes_move_a_response_by_no_more_than_what_was_left():
 
 def test_a_beam_without_loss_has_no_such_bound():
     assert lossy_bound(servo(PD, eta="0"), 1) == Refused("some waves have no material damping")
+
+
+def test_a_bound_beyond_very_many_modes_is_none():
+    # The boom stretches: waves of 5200 m/s are damped as those of bending are only beyond 10^9 rad/s.
+    steel = (
+        'E = "210 GPa", I = "8.3e-10 m^4", A = "1e-4 m^2", rho = "7800 kg/m^3", l = "0.5 m", eta = "1e-5 s"'
+    )
+    boom = of(
+        f"""
+elements.post = {{ type = "frame", between = ["ground", "corner"], angle = "90 deg", {steel} }}
+elements.boom = {{ type = "frame", between = ["corner", "tip"], {steel} }}
+inputs.F = {{ force = "tip.y" }}
+outputs.X = "tip.y"
+"""
+    )
+    assert lossy_bound(boom, 1) == Refused("a bound on poles is known only beyond very many modes")
