@@ -159,8 +159,8 @@ def covered(
     def halves(span: Part) -> list[Part]:
         return [] if span[1] - span[0] < 2 * shortest else halved(span)
 
-    whole = [(k / parts, (k + 1) / parts) for k in range(parts)]
-    search = branch(whole, decided_on, halves, until=lambda found, _: bool(found.undecided))
+    spans = [(k / parts, (k + 1) / parts) for k in range(parts)]
+    search = branch(spans, decided_on, halves, until=lambda found, _: bool(found.undecided))
     if search.undecided:
         raise UndecidedError
     return search.decided

@@ -223,7 +223,7 @@ class LoopAtOrigin:
     def side(self, level: arb, radius: arb) -> int:
         """Return 1 if ``abs(A/B)`` stays above a level within a radius, -1 if below, and 0 if not known."""
         a, b = self.sizes(radius)
-        rest, curvature = self.excess(level, radius)
+        at_zero, curvature = self.excess(level, radius)
         with precision(ORIGIN_BITS):
             power = self.orders[0] - self.orders[1]
             share = level * radius**-power
@@ -233,7 +233,7 @@ class LoopAtOrigin:
                 return 1
             gain, is_even = radius**2 * curvature, not power and self.is_real and self.turn.real == 0
             # A hull with 0 would reach beyond it by more than the excess at rest.
-            least, most = rest + gain.min(arb(0)), rest + gain.max(arb(0))
+            least, most = at_zero + gain.min(arb(0)), at_zero + gain.max(arb(0))
             return bool(least > 0) - bool(most < 0) if is_even else 0
 
     def _lowest(self, which: int) -> arb:
@@ -245,12 +245,14 @@ class LoopAtOrigin:
 
     def _beyond(self, which: int, omega: arb, beyond: int = 0) -> acb:
         """Return A or B over its lowest power on a piece of the axis, without its first ``beyond`` terms."""
-        series, order, place = self.series[which], self.orders[which] + beyond, omega * self.turn
-        share, total = place.abs_upper() / series.reach, acb(0)
+        series, order, argument = self.series[which], self.orders[which] + beyond, omega * self.turn
+        share, total = argument.abs_upper() / series.reach, acb(0)
         for power in reversed(range(order, len(series.coefficients))):
-            total = total * place + self._number(which, power)
-        rest = series.bound / (1 - share) / series.reach**order * share ** (len(series.coefficients) - order)
-        return total + acb(arb(0, rest.upper()), arb(0, rest.upper()))
+            total = total * argument + self._number(which, power)
+        remainder = (
+            series.bound / (1 - share) / series.reach**order * share ** (len(series.coefficients) - order)
+        )
+        return total + acb(arb(0, remainder.upper()), arb(0, remainder.upper()))
 
 
 def loop_at_origin(
@@ -260,9 +262,9 @@ def loop_at_origin(
     ring = bound.ratio.ring
     orders, parts = [], []
     for polynomial in polynomials:
-        whole = Factored.polynomial(ring, polynomial)
+        product = Factored.polynomial(ring, polynomial)
         try:
-            part = KernelFunction(bound, whole)
+            part = KernelFunction(bound, product)
             order = part.order()
             if order is None or part.power != 1:
                 return None
@@ -271,15 +273,17 @@ def loop_at_origin(
             spend()
             return None
         orders.append(order)
-        parts.append((part, lowest, whole.unit))
+        parts.append((part, lowest, product.unit))
     lowest = min(low for _, low, _ in parts)
     if lowest == -inf:
         return None
     with precision(ORIGIN_BITS):
         for share in SHARES:  # where waves lose energy, a wavenumber may vanish on the circle
             reach = arb(exp(lowest) * times * share)
-            own = [local_series(part, acb(0), reach, ORIGIN_BITS, SERIES_POINTS * 2) for part, _, _ in parts]
-            known = [each for each in own if each is not None]
+            tried = [
+                local_series(part, acb(0), reach, ORIGIN_BITS, SERIES_POINTS * 2) for part, _, _ in parts
+            ]
+            known = [each for each in tried if each is not None]
             if len(known) == len(parts):
                 break
         else:

@@ -67,8 +67,8 @@ class AxisSearch(ABC):
 
     def leave_open(self, omega: arb) -> None:
         """Say that it could not be decided whether poles cross near a frequency [rad/s]."""
-        place = float(hertz(omega).mid())
-        self.reasons.append(f"it could not be decided whether poles cross the axis near {place:.6g} Hz")
+        frequency = float(hertz(omega).mid())
+        self.reasons.append(f"it could not be decided whether poles cross the axis near {frequency:.6g} Hz")
 
     def crossings_of(self, function: OnAxis, digits: int, *, is_simple: bool = True) -> list[Crossing]:
         """Return where poles cross the axis for gains in the range; roots of a function may be multiple."""
@@ -86,8 +86,8 @@ class AxisSearch(ABC):
                 if self._is_far(around):
                     continue
                 if around.b.contains(0):
-                    place = float(hertz(omega).mid())
-                    self.reasons.append(f"poles near {place:.6g} Hz may stay on the axis for every gain")
+                    frequency = float(hertz(omega).mid())
+                    self.reasons.append(f"poles near {frequency:.6g} Hz may stay on the axis for every gain")
                     continue
                 gain = around.gain()
                 # A simple pole s moves by ds/dK = -B/(A' + K B'); its mirror image moves alike.

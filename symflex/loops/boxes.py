@@ -106,9 +106,9 @@ class CharacteristicFunction:
         moving = {name: _moving(tf, name) for name in self.names}
         moved = []
         for f in factors_of(tf):
-            own = tuple(name for name, places in moving.items() if any(f.degrees()[i] for i in places))
+            moved_by = tuple(name for name, places in moving.items() if any(f.degrees()[i] for i in places))
             # Hidden poles that energy keeps out of the right half-plane do not change the verdict.
-            if own and not (f in hidden and self._rests_with(own)):
+            if moved_by and not (f in hidden and self._rests_with(moved_by)):
                 moved.append(f)
         return tuple(moved)
 
@@ -183,11 +183,11 @@ class CharacteristicFunction:
             slopes = self.expanded(box.box)
             nameless = self.nameless
             entire = None if nameless is None else FirstOrder(self, nameless, self._entire, box.box)
-            left = [self._left(slopes, entire, i, pieces, path) for i, pieces in enumerate(box.pieces)]
-        every = [parts for each in left for parts in each.values()]
+            remaining = [self._left(slopes, entire, i, pieces, path) for i, pieces in enumerate(box.pieces)]
+        every = [parts for each in remaining for parts in each.values()]
         weights = [sum(w) for w in zip(*(weights for weights, _ in every), strict=True)]
         lines = tuple(line for _, line in every) if all(line for _, line in every) else ()
-        return replace(box, pieces=tuple(map(tuple, left)), weights=tuple(weights), lines=lines)
+        return replace(box, pieces=tuple(map(tuple, remaining)), weights=tuple(weights), lines=lines)
 
     def halves(self, box: OpenBox) -> list[OpenBox]:
         """Return two parts of a box, parted along the parameter that contributes most to what is open."""
@@ -225,8 +225,8 @@ class CharacteristicFunction:
             until=lambda found, _: len(found.decided) >= MOST_OPEN,
         )
         nothing = [0.0 for _ in slopes.box], Line()
-        left = {one.piece: (one.weights, one.line) for one in search.decided}
-        return left | {one.piece: nothing for one in search.undecided}
+        open_pieces = {one.piece: (one.weights, one.line) for one in search.decided}
+        return open_pieces | {one.piece: nothing for one in search.undecided}
 
     def kernels(self, tf: TransferFunction, box: Box, along: str = "") -> KernelValues:
         """Return the evaluator for parameters anywhere in a box, to first order in one of them."""
@@ -307,22 +307,22 @@ class FactorOnPath:
         point = (low + high) / 2
         s = self.start + self.way * ball(low).union(ball(high))
         # Next to 0 kernels of waves say nothing; all factors are tried there at once.
-        own, ones = self.slopes, [self.factor]
+        factors, ones = self.slopes, [self.factor]
         if self.entire is not None and s.contains(0):
-            own, ones = self.entire, list(range(len(self.entire.polynomials)))
-        near = own.generators(s)
-        around = own.around(s, ones, near)
+            factors, ones = self.entire, list(range(len(self.entire.polynomials)))
+        near = factors.generators(s)
+        around = factors.around(s, ones, near)
         if not any(value.contains(0) for value, _ in around):
             return None
         turns = [slope * self.way for _, slope in around]
         if not low:
             # Where the box alone leaves a root at the start, no shorter piece does without it.
-            values = own.swings(self.start, ones, near)
+            values = factors.swings(self.start, ones, near)
             share, weights = max((share_taken(c, terms) for c, terms in values), key=lambda each: each[0])
             if share >= 1 and _is_within([turn * ball(high) for turn in turns], values):
                 line = _line(*values[0], turns[0]) if len(ones) == 1 else ()
                 return OpenPiece(region.piece, weights, line)
-        values = own.swings(self.start + self.way * ball(point), ones, near)
+        values = factors.swings(self.start + self.way * ball(point), ones, near)
         steps = [turn * ball(high - point) for turn in turns]
         shares = [share_taken(c, [*terms, step]) for (c, terms), step in zip(values, steps, strict=True)]
         if all(share < 1 for share, _ in shares):
@@ -337,8 +337,8 @@ class FactorOnPath:
             step = sum((term * arb(0, 1) for term in terms), centre) / turn
             if step.is_finite():
                 line = _line(centre, terms, turn)
-                rest = ball(point) - step.real
-                begin, end = max(low, _fraction(rest.lower())), min(high, _fraction(rest.upper()))
+                roots = ball(point) - step.real
+                begin, end = max(low, _fraction(roots.lower())), min(high, _fraction(roots.upper()))
         if begin > end:
             return None
         if (is_open and is_spent) or (end - begin) * 2 ** current_bits() < end:
@@ -439,11 +439,12 @@ def _fraction(x: arb) -> Fraction:
 def _moving(tf: TransferFunction, name: str) -> set[int]:
     """Return the places in the ring of what depends on a parameter, wavenumbers and kernels among it."""
     ring, table = tf.ratio.ring, tf.kernels
-    own = {name, *(c.generator for c in tf.constants if names_among(c.expression, {name}))} & set(ring.index)
-    laws = [d for d in table.dispersions if any(v.depends_on(n) for v in d.coefficients for n in own)]
+    moved = (c.generator for c in tf.constants if names_among(c.expression, {name}))
+    moving = {name, *moved} & set(ring.index)
+    laws = [d for d in table.dispersions if any(v.depends_on(n) for v in d.coefficients for n in moving)]
     waves = {w for d in laws for w in d.wavenumbers}
-    kernels = (k for k in table.kernels if k.dispersion in laws or any(map(k.length.depends_on, own)))
-    return {ring.index[n] for n in (*own, *waves, *(k.generator for k in kernels))}
+    kernels = (k for k in table.kernels if k.dispersion in laws or any(map(k.length.depends_on, moving)))
+    return {ring.index[n] for n in (*moving, *waves, *(k.generator for k in kernels))}
 
 
 def factors_of(tf: TransferFunction, given: Sequence[fmpz_mpoly] | None = None) -> tuple[fmpz_mpoly, ...]:

@@ -145,13 +145,13 @@ class StabilityChart(Printed):
 
     def region_at(self, *values: Fraction | float | str) -> ChartRegion | None:
         """Return the region in which a point lies; None if it is undecided, or lies outside of the ranges."""
-        parts, place = len(self.cells), []
+        parts, cell = len(self.cells), []
         for value, (low, high) in zip(values, self.ranges, strict=True):
             x = Fraction(value)
             if not low <= x <= high:
                 return None
-            place.append(min(int((x - low) / (high - low) * parts), parts - 1))
-        region = int(self.cells[tuple(place)])
+            cell.append(min(int((x - low) / (high - low) * parts), parts - 1))
+        region = int(self.cells[tuple(cell)])
         return None if region < 0 else self.regions[region]
 
     def at(self, *values: Fraction | float | str) -> str:
@@ -291,8 +291,8 @@ class _CellSearch:
     def decide(self, boxes: list[OpenBox]) -> Open[list[OpenBox]] | None:
         """Mark the free cells in both halves of boxes; the halves in which some are not are open."""
         halves = [half for box in boxes for half in self.function.halves(box)]
-        left = [narrowed for half in halves if (narrowed := self._marked(half)) is not None]
-        return Open(left) if left else None
+        undecided = [narrowed for half in halves if (narrowed := self._marked(half)) is not None]
+        return Open(undecided) if undecided else None
 
     def alone(self, boxes: list[OpenBox]) -> list[list[OpenBox]]:
         """Return boxes one by one, but those that were halved as often as is of use; none if all were."""
@@ -317,10 +317,10 @@ class _CellSearch:
         # Where a line bounds a box, or no end of the poles is known, the longer range is halved.
         if narrowed.lines or not box.is_bounded or max(parts) > SLENDER * min(parts):
             narrowed = replace(narrowed, weights=tuple(1 / part for part in parts))
-        own = cells_without(narrowed)
+        free = cells_without(narrowed)
         for axis, step in enumerate(steps):
-            own = own.repeat(step // PARTS, axis)
-        cells |= own
+            free = free.repeat(step // PARTS, axis)
+        cells |= free
         self._found += int(cells.sum()) - before
         return None if cells.all() else narrowed
 

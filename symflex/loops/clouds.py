@@ -90,10 +90,10 @@ def root_clouds(
     clouds: list[RootCloud] = []
     both: dict[Literal["pole", "zero"], Sequence[Root]] = {"pole": located.poles, "zero": located.zeros}
     for kind, roots in both.items():
-        own = function.of_roots(kind)
+        asked = function.of_roots(kind)
         upper = [complex(r) for r in roots if not r.im < 0 and not r.is_zero]
-        if own.factors:
-            clouds += _clouds(own, box, upper, kind)
+        if asked.factors:
+            clouds += _clouds(asked, box, upper, kind)
     return tuple(clouds)
 
 
@@ -170,8 +170,8 @@ def _is_free(function: CharacteristicFunction, box: Box, start: complex, way: co
         narrowed = function.narrowed(each, path=path)
         return Open(narrowed) if any(narrowed.pieces) else None
 
-    whole = OpenBox(box, 0.0, tuple((PIECE,) for _ in function.factors))
-    search: Branching[OpenBox, None] = branch([whole], decide, function.halves, most=MOST_PARTS)
+    everywhere = OpenBox(box, 0.0, tuple((PIECE,) for _ in function.factors))
+    search: Branching[OpenBox, None] = branch([everywhere], decide, function.halves, most=MOST_PARTS)
     return not search.undecided
 
 

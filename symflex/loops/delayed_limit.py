@@ -33,33 +33,40 @@ class DelayedLimit:
 
 def delayed_limit(above: RealTerms, below: RealTerms) -> DelayedLimit | None:
     """Return the limit superior; None where it is 0 or infinite, or the phases it takes are not proved."""
-    order = max(power for own in below.values() for power in own)
-    if max(power for own in above.values() for power in own) != order:
+    order = max(power for powers in below.values() for power in powers)
+    if max(power for powers in above.values() for power in powers) != order:
         return None
-    alpha, beta = ({e: own[order] for e, own in terms.items() if order in own} for terms in (above, below))
+    alpha, beta = (
+        {e: powers[order] for e, powers in terms.items() if order in powers} for terms in (above, below)
+    )
     first = max(beta, key=lambda exponent: float(abs(beta[exponent]).mid()))
-    rest = {exponent: value for exponent, value in beta.items() if exponent != first}
-    least = abs(beta[first]) - sum(map(abs, rest.values()), arb(0))
+    others = {exponent: value for exponent, value in beta.items() if exponent != first}
+    least = abs(beta[first]) - sum(map(abs, others.values()), arb(0))
     delays = {i for exponent in (*alpha, *beta) for i, _, _ in exponent}
     turns = (1,) if len(delays) > 1 else (1, -1)  # what all exponentials, or those of one delay, come to
-    signs = (alpha, {first: -beta[first], **rest})
+    signs = (alpha, {first: -beta[first], **others})
     if not (least > 0 and any(all(_have_one_sign(s, turn) for s in signs) for turn in turns)):
         return None
     size = sum(map(abs, alpha.values()), arb(0)) / least
     weights = [(above[e], abs(value)) for e, value in alpha.items()]
-    weights += [(below[e], size * abs(value)) for e, value in rest.items()]
+    weights += [(below[e], size * abs(value)) for e, value in others.items()]
     is_whole = len(alpha) == len(above) and len(beta) == len(below)
     return DelayedLimit(size, _below_from(weights, below[first], int(order)) if is_whole else None)
 
 
 def delayed_bound(above: RealTerms, below: RealTerms, radius: float) -> arb | None:
     """Return what the magnitude is at most from a frequency [rad/s] on; None where that is not known."""
-    order = max(power for own in below.values() for power in own)
-    if max(power for own in above.values() for power in own) > order:
+    order = max(power for powers in below.values() for power in powers)
+    if max(power for powers in above.values() for power in powers) > order:
         return None
-    largest = max((abs(own[order]) for own in below.values() if order in own), key=lambda c: float(c.mid()))
+    largest = max(
+        (abs(powers[order]) for powers in below.values() if order in powers), key=lambda c: float(c.mid())
+    )
     most, others = (
-        sum((abs(c) * arb(radius) ** int(p - order) for own in x.values() for p, c in own.items()), arb(0))
+        sum(
+            (abs(c) * arb(radius) ** int(p - order) for powers in x.values() for p, c in powers.items()),
+            arb(0),
+        )
         for x in (above, below)
     )
     least = 2 * largest - others
@@ -77,8 +84,8 @@ def _below_from(
 ) -> float | None:
     """Return the frequency from which on ``sum w_k (abs(a_k/alpha_k)^2 - abs(b_0/beta_0)^2)`` is negative."""
     main, total = _square(first, order), arb_poly([])
-    for own, weight in weights:
-        total += (_square(own, order) - main) * weight
+    for powers, weight in weights:
+        total += (_square(powers, order) - main) * weight
     # The coefficients of the highest power are all one, and cancel, which balls do not show.
     coefficients = total.coeffs()[:order]
     while coefficients and coefficients[-1] == 0:

@@ -190,9 +190,9 @@ class DistributedFactors(AxisSearch):
         return bound, total
 
     def _function(self, gain: Fraction) -> KernelFunction:
-        bound, whole = self._product(gain)
-        s = whole.ring.context.gen(0)
-        return KernelFunction(*without_squares(bound, whole.filter(lambda f: f != s)))
+        bound, product = self._product(gain)
+        s = product.ring.context.gen(0)
+        return KernelFunction(*without_squares(bound, product.filter(lambda f: f != s)))
 
     @property
     def is_mirrored(self) -> bool:
@@ -336,8 +336,8 @@ class DistributedFactors(AxisSearch):
         ring = self.bound.ratio.ring
         parts = tuple(Factored.polynomial(ring, function.parts[i]) for i in basis)
         limits = exact_fraction(hull.lower()), exact_fraction(hull.upper())
-        own = GainPolynomial(parts, factor.multiplicity)
-        straight = replace(self, gain="", factors=(own,), limits=limits, loop=None, reasons=[])
+        polynomial = GainPolynomial(parts, factor.multiplicity)
+        straight = replace(self, gain="", factors=(polynomial,), limits=limits, loop=None, reasons=[])
         return value, values, straight
 
     def _inverted(

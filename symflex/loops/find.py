@@ -351,21 +351,21 @@ def _between(
     reasons: list[str] = []
     groups, ends = _grouped(crossings, parts.limits, reasons)
     counts = []
-    own: PoleCount | None = None  # of the factors with kernels
+    distributed: PoleCount | None = None  # of the factors with kernels
     for i, (below, above) in enumerate(pairwise(ends)):
         entered_budget().progress.report(i / len(ends), f"poles counted in {i} of {len(ends) - 1} intervals")
         sample = _sample(below, above)
         total = sum((factor.count(sample) for factor in lumped), apart)
         if along is not None:
-            own = along.count(sample, own, groups[i - 1][1] if i else ())
-        counts.append(total if own is None else total + own)
+            distributed = along.count(sample, distributed, groups[i - 1][1] if i else ())
+        counts.append(total if distributed is None else total + distributed)
         spend()
     if end is not None:
         first = next(i for i, high in enumerate(ends[1:]) if high is None or high > 0)
         top = ends[first + 1]
         small = (Fraction(1) if top is None else exact_fraction(top)) / NEXT_TO_ZERO
-        own = apart if along is None else along.count(small) + apart
-        least = sum((factor.count(small, end) for factor in lumped), own)
+        beside = apart if along is None else along.count(small) + apart
+        least = sum((factor.count(small, end) for factor in lumped), beside)
         counts = _up_to_end(counts, [_is_within(group, end) for _, group in groups], first, least)
     boundaries, intervals, start = list[Boundary](), list[GainInterval](), ends[0]
     counted = inf  # up to which frequency

@@ -65,10 +65,10 @@ class GainFunctions:
         at_one = {**self.values, self.gain: ExactValue(Fraction(self.sign))}
         for generator, call in self.calls.items():
             power = int((exponent(call, self.gain) or ZERO) * (self.root or 1))
-            whole, square = rational_value(call, at_one), rational_value(call.argument, at_one)
+            root, square = rational_value(call, at_one), rational_value(call.argument, at_one)
             name = f"{generator} at {self.sign}" if square is None else f"{call.name}({square})"
             known = later(call, {name: enclosure(value) for name, value in at_one.items()})
-            powers.append((power, whole or Fraction(1), None if whole else RealConstant(name, known)))
+            powers.append((power, root or Fraction(1), None if root else RealConstant(name, known)))
         return powers
 
     def at(self, gain: arb) -> list[arb_series]:

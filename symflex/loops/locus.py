@@ -126,8 +126,8 @@ def _with(loop: Loop, num: Factored, den: Factored, gain: Fraction) -> BoundTran
         message = f"the equations have no unique solution for {loop.gain.name} = {float(gain):.6g}"
         hint = f"give '{loop.gain.name}' another value, or leave this one out of --range"
         raise ModelError(Diagnostic("SF231", message, loop.gain.span, hint))
-    own = (loop.gain.name, ExactValue(gain))
-    values = tuple(own if name == loop.gain.name else (name, value) for name, value in bound.values)
+    set_gain = (loop.gain.name, ExactValue(gain))
+    values = tuple(set_gain if name == loop.gain.name else (name, value) for name, value in bound.values)
     return with_parts(replace(bound, values=values), num, den)
 
 
@@ -206,8 +206,8 @@ def _followed(
 ) -> tuple[list[Branch], set[int] | None, list[complex], list[Branch]]:
     """Return branches from the first gain, which last poles they reach, these, and branches that enter.
 
-    ``None`` in place of the poles reached if branches and proved poles do not match. ``wanted`` are the modes
-    that are shown of a loop with kernels.
+    ``None`` in place of the poles reached if branches and certified poles do not match. ``wanted`` are the
+    modes that are shown of a loop with kernels.
     """
     function = _traceable(loop, (*start.all_poles, *end.all_poles))
     poles, final = _points(start.all_poles), _points(end.all_poles)

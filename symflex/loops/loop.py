@@ -115,9 +115,9 @@ def characteristic_loop(
         raise ModelError(Diagnostic("SF801", message, gain.span, NO_LOOP))
     bound = _bound(tf, gain, given)
     if bound.symbolic is not None:  # derived anew with some of the values: its ring is another
-        left = {p.name for p in bound.source.model.parameters}
-        if gain.name in left:
-            return characteristic_loop(bound.source, gain, {n: v for n, v in given.items() if n in left})
+        remaining = {p.name for p in bound.source.model.parameters}
+        if gain.name in remaining:
+            return characteristic_loop(bound.source, gain, {n: v for n, v in given.items() if n in remaining})
     known = dict(bound.all_values)
     # Bound it may have another value, where nothing is singular.
     declared = gain.value is not None or gain.name in given
@@ -128,8 +128,8 @@ def characteristic_loop(
         parts = dict(sorted(coefficients_of(ring, factor, positions).items()))
         exponents = tuple(parts)
         if not any(any(key[1:]) for key in parts):
-            rest, exponents = (0,) * len(calls), ()
-            parts = {(i,): parts.get((i, *rest), ring.constant(0)) for i in range(max(parts)[0] + 1)}
+            no_calls, exponents = (0,) * len(calls), ()
+            parts = {(i,): parts.get((i, *no_calls), ring.constant(0)) for i in range(max(parts)[0] + 1)}
         pieces = bind_polynomials(tf, bound, tuple(parts.values()))
         polynomials.append(GainPolynomial(pieces, exponent, is_hidden, exponents, factor))
     inside = {name: v for name, v in known.items() if any(names_among(c, {name}) for c in calls.values())}
@@ -189,7 +189,7 @@ def independent(polynomials: Sequence[fmpz_mpoly]) -> tuple[list[int], list[list
     """Return which polynomials are independent, and for each of these its shares in all of them."""
     monomials = sorted({m for f in polynomials for m in f.monoms()})
     terms = [dict(f.terms()) for f in polynomials]
-    matrix = fmpq_mat([[int(own.get(m, 0)) for own in terms] for m in monomials])
+    matrix = fmpq_mat([[int(coefficients.get(m, 0)) for coefficients in terms] for m in monomials])
     reduced, rank = matrix.rref()
     rows = [[reduced[i, j] for j in range(len(polynomials))] for i in range(rank)]
     return [next(j for j, share in enumerate(row) if share != 0) for row in rows], rows

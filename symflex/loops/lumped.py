@@ -60,17 +60,17 @@ class LumpedFactor:
         terms = _integer_terms(factor)
         constants = [RealConstant(name, evaluate) for name, evaluate in bound.constants]
         functions = None if loop is None or not factor.exponents else loop.functions
-        own = [] if functions is None else [f"{name} of the gain" for name in functions.calls]
+        unknowns = [] if functions is None else [f"{name} of the gain" for name in functions.calls]
         if functions is not None and functions.root is not None:
-            terms, own = _in_root(terms, functions, constants), []
+            terms, unknowns = _in_root(terms, functions, constants), []
         used = [i for i, _ in enumerate(constants) if any(key[2][i] for key in terms)]
-        ring = Ring(("w", "K", *own, *(constants[i].name for i in used)))
+        ring = Ring(("w", "K", *unknowns, *(constants[i].name for i in used)))
         zeros = min(s for s, _, _ in terms)
         parts: tuple[dict[tuple[int, ...], int], ...] = ({}, {})
         for (s, k, rest), number in terms.items():
             half, is_odd = divmod(s - zeros, 2)
-            place = (half, *k, *(rest[i] for i in used))
-            parts[is_odd][place] = number * (-1) ** half
+            exponents = (half, *k, *(rest[i] for i in used))
+            parts[is_odd][exponents] = number * (-1) ** half
         even, odd = (ring.context.from_dict(part) for part in parts)
         common = even.gcd(odd) if len(odd) else even
         kept, halves = tuple(constants[i] for i in used), (even / common, odd / common if len(odd) else odd)
@@ -98,16 +98,16 @@ class LumpedFactor:
 
     def _crossings(self, digits: int) -> list[Crossing]:
         crossings: list[Crossing] = []
-        whole = self.even * self.common, self.odd * self.common
-        if not self._moves(*whole):
+        parts = self.even * self.common, self.odd * self.common
+        if not self._moves(*parts):
             return []
-        content = reduce(fmpz_mpoly.gcd, (c for f in whole for c in self.ring.coefficients(f, W)))
+        content = reduce(fmpz_mpoly.gcd, (c for f in parts for c in self.ring.coefficients(f, W)))
         crossings += [Crossing(gain, (), is_singular=True) for gain in self._gains(content, digits)]
-        whole = whole[0] / content, whole[1] / content
-        if degree_in(whole[0], W) or len(whole[1]):
-            at_zero = self.ring.coefficients(whole[0], W)[0]
+        parts = parts[0] / content, parts[1] / content
+        if degree_in(parts[0], W) or len(parts[1]):
+            at_zero = self.ring.coefficients(parts[0], W)[0]
             crossings += [Crossing(gain, (arb(0),)) for gain in self._gains(at_zero, digits)]
-        leading = [self._leading(whole)]
+        leading = [self._leading(parts)]
         if degree_in(self.common, W):
             leading.append(self._leading((self.common, self.common * 0)))
         crossings += [
@@ -180,8 +180,8 @@ class LumpedFactor:
 
     def _numbers(self, gain: arb) -> list[arb]:
         """Return the gain, its functions and the constants, at the current precision."""
-        own = [gain] if self._mixed is None else [x[0] for x in self._mixed.at(gain)]
-        return [*own, *(constant.evaluate() for constant in self.constants)]
+        gain_values = [gain] if self._mixed is None else [x[0] for x in self._mixed.at(gain)]
+        return [*gain_values, *(constant.evaluate() for constant in self.constants)]
 
     def _affine(self, root: Root, even: Sequence[fmpz_mpoly], odd: Sequence[fmpz_mpoly]) -> Crossing | None:
         """Return the gain at which the poles cross at a frequency; ``None`` where that is infinite."""
@@ -274,9 +274,9 @@ def _in_root(terms: Terms, functions: GainFunctions, constants: list[RealConstan
         places.append(None if constant is None else [c.name for c in constants].index(constant.name))
     most = [max(key[1][j] for key in terms) for j in range(1, 1 + len(places))]
     moved: dict[tuple[int, int, tuple[int, ...]], int] = {}
-    for (s, (own, *others), rest), number in terms.items():
+    for (s, (power_of_gain, *others), rest), number in terms.items():
         exponents = [*rest[: len(constants)], *[0] * (len(constants) - len(rest))]
-        power, value = own * (functions.root or 1), number * functions.sign**own
+        power, value = power_of_gain * (functions.root or 1), number * functions.sign**power_of_gain
         for (each, factor, _), place, times, top in zip(functions.powers, places, others, most, strict=True):
             power += each * times
             value *= factor.numerator**times * factor.denominator ** (top - times)

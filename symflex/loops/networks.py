@@ -109,8 +109,8 @@ def network_loop(equations: Equations, gain: ModelParameter, nominal: Fraction |
     columns = {v: i for i, v in enumerate(equations.unknowns)}
     size = len(columns)
     ring = equations.ring
-    place = ring.index.get(gain.name)
-    if place is None:
+    index = ring.index.get(gain.name)
+    if index is None:
         return None
     numeric = EquationsAt(equations)
     moving = numeric.moving(gain.name)
@@ -123,11 +123,11 @@ def network_loop(equations: Equations, gain: ModelParameter, nominal: Fraction |
     rows: list[dict[int, Factored]] = []
     border: dict[int, Factored] = {}
     acts: int | None = None
-    for i, whole in enumerate(plain):
+    for i, plain_row in enumerate(plain):
         kept: dict[int, Factored] = {}
-        row = _opened(numeric, {j: value for j, value in whole.items() if j < size}, moving - {gain.name})
+        row = _opened(numeric, {j: value for j, value in plain_row.items() if j < size}, moving - {gain.name})
         for j, value in row.items():
-            parts = _straight(value, place)
+            parts = _straight(value, index)
             if parts is None:
                 return None
             constant, slope = parts
@@ -155,25 +155,25 @@ def _opened(numeric: EquationsAt, row: dict[int, Factored], names: Collection[st
         meant = numeric.definitions[name]
         image = {name: meant if propagation is None else propagation.embed(meant)}
         row = {j: composed(x, image) if holds(x, (name,)) else x for j, x in row.items()}
-    place, one = ring.index[LAPLACE], Factored.number(ring, 1)
-    below = (x.denominator().filter(lambda f: degree_in(f, place) > 0) for x in row.values())
+    at_s, one = ring.index[LAPLACE], Factored.number(ring, 1)
+    below = (x.denominator().filter(lambda f: degree_in(f, at_s) > 0) for x in row.values())
     common = least_common_multiple(one, below)
     return {j: x * common for j, x in row.items()}
 
 
-def _straight(value: Factored, place: int) -> tuple[Factored, Factored] | None:
+def _straight(value: Factored, index: int) -> tuple[Factored, Factored] | None:
     """Return a and b of ``a + K b``; ``None`` where the value is no straight line in K."""
     ring = value.ring
-    with_gain = [(f, e) for f, e in value.factors if degree_in(f, place)]
+    with_gain = [(f, e) for f, e in value.factors if degree_in(f, index)]
     if not with_gain:
         return value, Factored.number(ring, 0)
-    if len(with_gain) > 1 or with_gain[0][1] != 1 or degree_in(with_gain[0][0], place) > 1:
+    if len(with_gain) > 1 or with_gain[0][1] != 1 or degree_in(with_gain[0][0], index) > 1:
         return None
     factor = with_gain[0][0]
-    rest = Factored(ring, value.unit, tuple((f, e) for f, e in value.factors if f != factor))
-    parts = by_powers(ring, factor, place)
+    constant_factors = Factored(ring, value.unit, tuple((f, e) for f, e in value.factors if f != factor))
+    parts = by_powers(ring, factor, index)
     constant, slope = (Factored.polynomial(ring, parts.get(n, ring.constant(0))) for n in (0, 1))
-    return rest * constant, rest * slope
+    return constant_factors * constant, constant_factors * slope
 
 
 @dataclass
@@ -224,16 +224,16 @@ class NetworkFactors(AxisSearch):
         """A and B in the disc, with the orders of their roots at 0."""
         cramer = self.loop.cramer
         try:
-            whole = self.loop.in_disc(self.radius[0] * WIDER)
+            both = self.loop.in_disc(self.radius[0] * WIDER)
             size = len(cramer.entries)
-            least = [series.order_at_zero() for series in (whole.a, whole.minus_b)]
+            least = [series.order_at_zero() for series in (both.a, both.minus_b)]
             orders = [n and order_at_zero(cramer, size - 1 + i, n) for i, n in enumerate(least)]
         except (UndecidedError, EssentialSingularityError) as error:
             message = "the loop's determinants are not enclosed in a disc"
             raise UncertifiedError(Diagnostic("SF802", message, None, "lower --up-to")) from error
         if orders != least:
             raise UncertifiedError(Diagnostic("SF802", "how many poles rest at s = 0 is not known"))
-        return replace(whole, orders=(least[0], least[1]))
+        return replace(both, orders=(least[0], least[1]))
 
     @property
     def with_gain(self) -> tuple[LoopInDisc]:

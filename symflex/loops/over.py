@@ -141,8 +141,8 @@ def with_values(model: Model, values: Mapping[str, Given] | None) -> Model:
     """Return a model with other values in place of declared ones."""
     stated = {name: pick_gain(model.parameters, name) for name in values or {}}
     exact = dict(read_values(tuple(stated.values()), values or {}))
-    own = tuple(replace(p, value=exact[p.name]) if p.name in exact else p for p in model.parameters)
-    return replace(model, parameters=own)
+    parameters = tuple(replace(p, value=exact[p.name]) if p.name in exact else p for p in model.parameters)
+    return replace(model, parameters=parameters)
 
 
 def characteristic(
@@ -331,8 +331,8 @@ def find_intervals_up_to(
     reasons += [f"poles could not be counted near {float(ends[0]):.6g}" for ends in uncounted]
     radius = float(poles.radius)
     boxes = [OpenBox((part.ends,), radius, poles.frequencies(part)) for part in gaps]
-    rest = [OpenBox((ends,), radius) for ends in (*(part.ends for part in wide), *uncounted)]
-    boundaries, intervals = _boundaries(function, counted, boxes, rest, limits, digits, reasons)
+    undecided = [OpenBox((ends,), radius) for ends in (*(part.ends for part in wide), *uncounted)]
+    boundaries, intervals = _boundaries(function, counted, boxes, undecided, limits, digits, reasons)
     return replace(
         _map_of(function, limits, digits, parameter, nominal),
         boundaries=boundaries,
@@ -416,7 +416,9 @@ def pair_that_crosses(
     No pole meets the axis around the gap. About it interval Newton proves one value, and one frequency, with
     a root of one factor (Moore 1966); there it moves to one side. 0 where that is not proved.
     """
-    pieces = [(i, piece) for gap in gaps for i, own in enumerate(gap.pieces) for piece in own]
+    pieces = [
+        (i, piece) for gap in gaps for i, factor_pieces in enumerate(gap.pieces) for piece in factor_pieces
+    ]
     which = {i for i, _ in pieces}
     if len(which) != 1 or (function.factors[min(which)], 1) not in function.tf.den.factors:
         return 0
@@ -473,11 +475,11 @@ def _boundaries(
     starts, ends = [ball(first) if is_open else ball(limits[0]).union(ball(first))], list[arb]()
     poles = [count for _, count in counted]
     for (before, count), (after, other) in pairwise(counted):
-        own = [gap for gap in gaps if before[1] <= gap.box[0][0] < after[0]]
-        place = ball(before[1]).union(ball(after[0]))
+        between = [gap for gap in gaps if before[1] <= gap.box[0][0] < after[0]]
+        boundary = ball(before[1]).union(ball(after[0]))
         # Others come in pairs.
         is_real = (count.right - other.right) % 2 == 1 and not function.is_complex
-        unbounded = {gap.radius for gap in own if not gap.is_bounded}
+        unbounded = {gap.radius for gap in between if not gap.is_bounded}
         is_open = any(before[1] <= gap.box[0][0] < after[0] for gap in wide) or bool(unbounded - {VANISHES})
         if count == other and not is_open:
             is_open = True
@@ -491,12 +493,14 @@ def _boundaries(
             is_open = not is_real or any(value.contains(0) for value, _ in values)
         reasons += [VANISHES] * (is_open and VANISHES in unbounded)
         is_far = bool(unbounded)
-        omegas = () if is_far else _frequencies(own, digits, is_real=is_real)
+        omegas = () if is_far else _frequencies(between, digits, is_real=is_real)
         boundaries.append(
-            Boundary(place, (Crossing(place, omegas, is_infinite=is_far and not is_open, is_open=is_open),))
+            Boundary(
+                boundary, (Crossing(boundary, omegas, is_infinite=is_far and not is_open, is_open=is_open),)
+            )
         )
-        starts.append(ball(after[0]) if is_open else place)
-        ends.append(ball(before[1]) if is_open else place)
+        starts.append(ball(after[0]) if is_open else boundary)
+        ends.append(ball(before[1]) if is_open else boundary)
     is_open = any(last <= gap.box[0][0] for gap in wide)
     ends.append(ball(last) if is_open else ball(limits[1]).union(ball(last)))
     intervals = tuple(map(GainInterval, starts, ends, poles)) if poles else ()
@@ -505,6 +509,6 @@ def _boundaries(
 
 def _frequencies(gaps: Sequence[OpenBox], digits: int, *, is_real: bool) -> tuple[arb, ...]:
     """Return where on the axis poles may be [rad/s], apart in the digits; of a real pole that is 0."""
-    pieces = (piece for gap in gaps for own in gap.pieces for piece in own)
+    pieces = (piece for gap in gaps for factor_pieces in gap.pieces for piece in factor_pieces)
     places = _joined(pieces, Fraction(1, 10**digits))
     return tuple(arb(0) if is_real and not low else ball(low).union(ball(high)) for low, high in places)

@@ -178,8 +178,8 @@ def loop_peaks(loop: Loop, gain: Fraction) -> LoopPeaks:
     (a, b), peaks = loop.with_gain[0].coefficients, list[Peak]()
     b = b * gain
     for name, num in (("S", a), ("T", b), ("S - T", a - b)):
-        whole = replace(loop.bound, ratio=num / (a + b), parts=(num, a + b), is_of_model=False)
-        peaks.append(replace(find_peak(whole), tf=name, unit=""))
+        closed = replace(loop.bound, ratio=num / (a + b), parts=(num, a + b), is_of_model=False)
+        peaks.append(replace(find_peak(closed), tf=name, unit=""))
     with precision(BITS):
         width = _bandwidth(loop.bound, LoopFunction.of(loop.bound, a + b, b))
     return LoopPeaks(peaks[0], peaks[1], peaks[2], width)
@@ -283,7 +283,7 @@ def _of_polynomials(bound: BoundTransferFunction, asked: Peak) -> Peak:
     if all(pole.re < 0 for pole in poles):
         h2 = arb("inf") if degree >= 0 else settled(partial(_h2_norm, above, below, asked.digits), BITS)
     beyond = arb("inf") if rises else None
-    places = tuple(x for _, own in top for x in own)
+    places = tuple(x for _, roots in top for x in roots)
     return replace(asked, magnitude=magnitude, places=places, beyond=beyond, reasons=reasons, h2=h2)
 
 
@@ -348,7 +348,7 @@ class _Pieces:
 
     def peak(self) -> Peak:
         """Return the peak."""
-        bound, band, reasons, rest = self.bound, self.asked.band, list[str](), arb(0)
+        bound, band, reasons, at_rest = self.bound, self.asked.band, list[str](), arb(0)
         waves = KernelFunction(bound, Factored.polynomial(bound.ratio.ring, self.function.b))
         low, high = 0.0, waves.frequency_of(WAVES)
         if band is not None:
@@ -360,8 +360,8 @@ class _Pieces:
                 return replace(self.asked, magnitude=arb("inf"))
             if origin.orders[0] == origin.orders[1]:
                 above, below = origin.sizes(arb(0))
-                rest = abs(above / below)
-                self.best = rest.lower()
+                at_rest = abs(above / below)
+                self.best = at_rest.lower()
         elif not low:
             low = high / BELOW
             reasons.append("magnitudes next to 0 Hz")
@@ -376,7 +376,7 @@ class _Pieces:
         near = [piece.place * arb(1, SAME) for piece in self.near if not piece.is_below(self.best)]
         places = list(joined(sorted(near, key=lambda place: float(place.mid()))))
         if origin is not None and origin.side(self.best, arb(low)) >= 0:
-            falls = origin.is_real and origin.excess(rest, arb(low))[1] < 0
+            falls = origin.is_real and origin.excess(at_rest, arb(low))[1] < 0
             places.insert(0, arb(0) if falls else arb(0).union(arb(low)))
         found = replace(self.asked, magnitude=self.best.union(self._level()), reasons=tuple(reasons))
         beyond = None if self.most < self.best else self.beyond
@@ -397,15 +397,15 @@ class _Pieces:
             size = None if far is None else far.size(radius)
             most = None if terms is None else delayed_bound(*terms, radius)
             if size is not None and size.power <= 0:
-                own = (size.most * arb(radius) ** ball(size.power)).upper()
-                most = own if most is None else own.min(most)
+                bound_here = (size.most * arb(radius) ** ball(size.power)).upper()
+                most = bound_here if most is None else bound_here.min(most)
             if most is not None:
                 known.append((radius, most))
                 if most < self.best:
                     return radius
         if not known:
-            place = short_hertz(self.bound.frequency(arb(end)))
-            reasons.append(f"above {place} Hz no bound on the magnitude is known")
+            shown = short_hertz(self.bound.frequency(arb(end)))
+            reasons.append(f"above {shown} Hz no bound on the magnitude is known")
             return end
         start, self.most = known[0]
         self.beyond = self.bound.frequency(arb(start))
@@ -418,9 +418,9 @@ class _Pieces:
     def _search(self, low: float, high: float) -> arb | None:
         """Halve pieces until none may hold a larger magnitude; return a pole on the axis if one is met."""
         first = pieces(low, high, FIRST_RATIO) if low < high else []
-        whole = [self._piece(arb(start).union(arb(end))) for start, end in first]
+        parts = [self._piece(arb(start).union(arb(end))) for start, end in first]
         search = branch(
-            _largest_first(whole),
+            _largest_first(parts),
             self._decide,
             lambda piece: _largest_first([self._piece(half) for half in piece.halves]),
             until=lambda found, _: bool(found.decided),

@@ -83,12 +83,12 @@ class SpreadStability(Printed):
         def named(values: Iterable[object] | None) -> dict[str, object] | None:
             return None if values is None else dict(zip(self.names, values, strict=True))
 
-        whole, part = (
+        spread, part = (
             box and [[float(x) for x in ends] for ends in box] for box in (self.box, self.open_box)
         )
         return {
             "schema": SCHEMA,
-            "spread": named(whole),
+            "spread": named(spread),
             "units": named(self.units),
             "verdict": self.word,
             "certified": self.certified,

@@ -575,13 +575,13 @@ def _margins(stability: StabilityMap) -> Passage:
     for each in stability.phase_margins:
         angle = degrees(each.angle)
         direction = "lag" if angle > 0 else "lead"
-        place = f"{short_hertz(each.frequency)} Hz"
+        where = f"{short_hertz(each.frequency)} Hz"
         flag = ", the smallest" if each is worst and len(stability.phase_margins) > 1 else ""
         shown = figure(abs(angle), SHORT_DIGITS)
-        rows.append(("phase", f"{shown} deg", direction, place + flag))
+        rows.append(("phase", f"{shown} deg", direction, where + flag))
     if stability.margins.least_beyond is not None and stability.radius is not None:
-        place = f"all above {stability.radius / (2 * pi):.{SHORT_DIGITS}g} Hz"
-        rows.append(("phase", f"{stability.margins.least_degrees_beyond:.4g} deg", "least", place))
+        where = f"all above {stability.radius / (2 * pi):.{SHORT_DIGITS}g} Hz"
+        rows.append(("phase", f"{stability.margins.least_degrees_beyond:.4g} deg", "least", where))
     return Passage(lines, rows, has_head=False)
 
 
@@ -592,10 +592,10 @@ def crossover_text(gain: str, crossover: AllowedCrossover) -> str:
     at = f"{gain} = {_number(crossover.gain)}"
     if crossover.frequency is None or crossover.phase_margin is None:
         return f"none: at {at} the loop gain is below one at the lowest frequencies"
-    place = f"{short_hertz(crossover.frequency)} Hz at {at}"
+    where = f"{short_hertz(crossover.frequency)} Hz at {at}"
     angle = degrees(crossover.phase_margin)
     size = figure(abs(angle), 3, trimmed=True)
-    shown = f"{place}, phase margin {size} deg {'lag' if angle > 0 else 'lead'}"
+    shown = f"{where}, phase margin {size} deg {'lag' if angle > 0 else 'lead'}"
     shown += ": not usable" if abs(angle) < 30 else ""  # noqa: PLR2004 (with less it rings too long)
     return shown if crossover.is_limited else f"at least {shown}"
 

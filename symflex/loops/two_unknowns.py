@@ -165,8 +165,8 @@ def find_axis_points(function: LoopFunction, tree: GainTree, limits: Part, digit
                 proved.append(point)
         return None
 
-    whole = [OpenGains(ends, (tree,)) for ends in pieces(*limits, FIRST_RATIO)]
-    search: Branching[OpenGains, None] = branch(whole, decide, OpenGains.halves, most=MOST_INTERVALS)
+    ranges = [OpenGains(ends, (tree,)) for ends in pieces(*limits, FIRST_RATIO)]
+    search: Branching[OpenGains, None] = branch(ranges, decide, OpenGains.halves, most=MOST_INTERVALS)
     if search.unseen:
         return None
     return AxisPoints(proved, [box for each in search.undecided for box in each.boxes])

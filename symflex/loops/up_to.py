@@ -232,9 +232,9 @@ class PolesUpTo:
             return Open(part)
         values = self._on(part.ends)
         pieces = zip(self._moving, part.pieces, strict=True)
-        left = replace(part, pieces=tuple(self._left(values, factor, each) for factor, each in pieces))
-        circle = None if any(left.pieces) else self._circle_for(part.ends)
-        return Open(left) if circle is None else replace(left, circle=circle)
+        narrowed = replace(part, pieces=tuple(self._left(values, factor, each) for factor, each in pieces))
+        circle = None if any(narrowed.pieces) else self._circle_for(part.ends)
+        return Open(narrowed) if circle is None else replace(narrowed, circle=circle)
 
     def _circle_for(self, ends: Ends) -> Fraction | None:
         """Return the radius of an arc that no pole meets for any value in a part, None if none is known."""
@@ -316,8 +316,8 @@ class PolesUpTo:
         with precision(self.bits):
             # Next to s = 0 roots of dispersions meet; far out exponentials of matrices lose digits.
             waves = path.cells * high if path.kind == "axis" else 2 * path.cells
-            own = values.near if waves <= FEW_WAVES else values.far
-            return _directly(own, factor, path.box(piece), path.middle(piece))
+            sharper = values.near if waves <= FEW_WAVES else values.far
+            return _directly(sharper, factor, path.box(piece), path.middle(piece))
 
     @property
     def _width(self) -> Fraction:
@@ -349,8 +349,8 @@ class PolesUpTo:
 
         def values(points: Sequence[acb], parameter: acb) -> list[acb]:
             spend()
-            own = replace(kernels, constants={**kernels.constants, name: parameter})
-            return [at_centre(own.polynomial(polynomial, own.at(s))) for s in points]
+            moved = replace(kernels, constants={**kernels.constants, name: parameter})
+            return [at_centre(moved.polynomial(polynomial, moved.at(s))) for s in points]
 
         cell = Fraction(number, path.cells), Fraction(number + 1, path.cells)
         half = float(ends[1] - ends[0]) / 2
@@ -363,10 +363,10 @@ class PolesUpTo:
         total, values = PoleCount(0, at_rest), self._on((at, at))
         with suppress(UndecidedError):
             for factor, (_, exponent) in enumerate(self._factors):
-                own = self._count(values, factor, circle)
-                if own is None:
+                factor_poles = self._count(values, factor, circle)
+                if factor_poles is None:
                     return None
-                total += PoleCount(exponent * own.right, exponent * own.axis)
+                total += PoleCount(exponent * factor_poles.right, exponent * factor_poles.axis)
             return total
         return None
 
@@ -377,8 +377,8 @@ class PolesUpTo:
         if self._are_even[factor]:
             pieces = self._pieces(values, factor, axis, most=1)
             crossed = sum(bool(self._ratio(values, factor, axis, each).real < 0) for each in pieces)
-            whole = (2 * turn / arb.pi()).unique_fmpz()
-            right = -1 if whole is None else int(whole) - 2 * crossed  # twice as many
+            turns = (2 * turn / arb.pi()).unique_fmpz()
+            right = -1 if turns is None else int(turns) - 2 * crossed  # twice as many
             return None if right < 0 or right % 2 else PoleCount(right // 2, 2 * crossed)
         half = ((turn - self._turn(values, factor, axis)) / arb.pi()).unique_fmpz()
         return None if half is None or half < 0 else PoleCount(int(half), 0)
@@ -417,14 +417,14 @@ class PolesUpTo:
 
     def frequencies(self, part: OpenPart) -> tuple[tuple[Piece, ...], ...]:
         """Return the pieces of the axis in rad/s, as narrow as places where two poles meet are known."""
-        whole = self.axis.end
+        end = self.axis.end
         found = []
         for factor, pieces in zip(self._moving, part.pieces, strict=True):
-            own = [(low**2 * whole, high**2 * whole) for low, high in pieces]
-            if own and own[0][0] and self._are_even[factor]:
-                meeting = self._meeting(part.ends, factor, (own[0][0], own[-1][1]))
-                own = own if meeting is None else [meeting]
-            found.append(tuple(own))
+            places = [(low**2 * end, high**2 * end) for low, high in pieces]
+            if places and places[0][0] and self._are_even[factor]:
+                meeting = self._meeting(part.ends, factor, (places[0][0], places[-1][1]))
+                places = places if meeting is None else [meeting]
+            found.append(tuple(places))
         return tuple(found)
 
     def _meeting(self, ends: Ends, factor: int, piece: Piece) -> Piece | None:
