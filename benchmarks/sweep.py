@@ -3,6 +3,9 @@
 Wall time, since processes of their own do the work; loading, drawing, solving on two processes, naming modes
 and writing the file are all in it. The rivals get perfect brackets and guesses for the equation
 tan x + tanh x = 0 of each beam and prove nothing.
+
+Beams with a dashpot, which are not similar, and quarter cars are swept in one process, in processor time,
+against a search of its own at every point; quarter cars also against ``numpy.roots``, which proves nothing.
 """
 
 from __future__ import annotations
@@ -20,9 +23,10 @@ import numpy as np
 
 from benchmarks.measure import OWN, Claim, Extent, Measured, Measurement, run_snippet, times_as_fast
 from symflex import pipeline
+from symflex.model import Model
 from symflex.options import SweepOptions
 from symflex.roots import Modes
-from symflex.sweep import Sweep, plan_sweep, read_design, sweep
+from symflex.sweep import Sweep, plan_sweep, read_design, run_sweep, sweep
 from symflex.sweep.run import open_executor
 
 POINTS, QUICK_POINTS = (2500, 5000, 10_000), (10_000,)
@@ -39,6 +43,12 @@ MEBIBYTE = 1024
 LARGEST_MEMORY = 1024.0
 """[MiB]."""
 BEAM = Path(__file__).parents[1] / "derivations" / "eppinger1988" / "sliding_free_beam.toml"
+CLASSICS = BEAM.parents[1] / "classics"
+DAMPED = CLASSICS / "kelvin_voigt_cantilever.toml", "b=2:8:lin:{}", 5
+CAR = CLASSICS / "quarter_car.toml", "c_s=500:3000:lin:{}", None
+DAMPED_POINTS, DAMPED_SEARCHED = 100, 5
+CAR_POINTS, CAR_SEARCHED = 1000, 100
+FASTER_THAN_ALONE = {"damped beams": 6.0, "quarter cars": 2.0}
 OVER = ("E=+-5%", "I=+-10%", "rho=7700:8000", "A=+-10%", "l=+-2%")
 I_NOMINAL, A_NOMINAL = 4000e-12, 480e-6
 
@@ -144,6 +154,48 @@ def time_searches(points: int) -> float:
     return (time.perf_counter() - begin) * points / SEARCHED
 
 
+def time_along(name: str) -> float:
+    """Return the processor time [s] of a sweep in one process, from the derivation to the names of modes."""
+    path, over, modes = {"damped beams": DAMPED, "quarter cars": CAR}[name]
+    points = DAMPED_POINTS if modes else CAR_POINTS
+    model = pipeline.load(path)
+    task, design = plan_sweep(model, SweepOptions((over.format(points),), modes=modes, tf=_first(model)))
+    begin = time.process_time()
+    found = run_sweep(task, design)
+    taken = time.process_time() - begin
+    if not found.is_certified:
+        message = "the sweep is not certified"
+        raise RuntimeError(message)
+    return taken
+
+
+def time_alone(name: str) -> float:
+    """Return the processor time [s] of binding and a certified search at every point, extrapolated."""
+    path, over, modes = {"damped beams": DAMPED, "quarter cars": CAR}[name]
+    points, searched = (DAMPED_POINTS, DAMPED_SEARCHED) if modes else (CAR_POINTS, CAR_SEARCHED)
+    model = pipeline.load(path)
+    design = read_design(model.parameters, (over.format(searched),))
+    (tf,) = pipeline.derive_all(model, model.transfer_functions[:1])
+    begin = time.process_time()
+    for point in design.points:
+        bound = pipeline.bind(tf, dict(zip(design.names, point, strict=True)))
+        pipeline.roots(bound, Modes(modes) if modes else None)
+    return (time.process_time() - begin) * points / searched
+
+
+def time_car_by_numpy() -> float:
+    """Return the processor time [s] of ``numpy.roots`` for as many quarter cars, coefficients included."""
+    m_s, m_u, k_s, k_t = 300.0, 40.0, 20e3, 180e3
+    begin = time.process_time()
+    for c_s in np.linspace(500, 3000, CAR_POINTS):
+        np.roots([m_s * m_u, (m_s + m_u) * c_s, m_s * k_t + (m_s + m_u) * k_s, c_s * k_t, k_s * k_t])
+    return time.process_time() - begin
+
+
+def _first(model: Model) -> str:
+    return "/".join(model.transfer_functions[0])
+
+
 def peak_memory(points: int) -> float:
     """Return the largest memory [MiB] of this process during a sweep, or of one of its workers."""
     time_sweep(points)
@@ -163,9 +215,9 @@ def measure(extent: Extent) -> Measured:
 
     task = f"sweep of sliding-free beams, {MODES} poles each, {WORKERS} processes"
     points = extent.of(POINTS, QUICK_POINTS)
-    ours = {n: run(task, f"{n} points", f"time_sweep({n})", max(limit, OWN)) for n in points}
+    wholes = {n: run(task, f"{n} points", f"time_sweep({n})", max(limit, OWN)) for n in points}
     most = points[-1]
-    whole = ours[most]
+    whole = wholes[most]
     task = f"{MODES} poles of {most} sliding-free beams"
     measurements.append(
         Measurement(task, f"symflex sweep, certified, {WORKERS} processes", whole.seconds, whole.limit)
@@ -179,11 +231,18 @@ def measure(extent: Extent) -> Measured:
         Claim(f"{name}: times as fast as `findroot`", FASTER_THAN_FINDROOT, times_as_fast(whole, findroot)),
         Claim(f"{name}: times as fast as searches", FASTER_THAN_SEARCHES, times_as_fast(whole, searches)),
     ]
+    for name, count in (("damped beams", DAMPED_POINTS), ("quarter cars", CAR_POINTS)):
+        own_task = f"poles of {count} {name}, one process"
+        ours = run(own_task, "symflex sweep, certified", f"time_along({name!r})", max(limit, OWN))
+        alone = run(own_task, "a certified search at every point, extrapolated", f"time_alone({name!r})")
+        text = f"sweep of {count} {name}: times as fast as searches"
+        claims.append(Claim(text, FASTER_THAN_ALONE[name], times_as_fast(ours, alone)))
     if extent.is_quick:
         return Measured(measurements, claims)
+    run(own_task, "`numpy.roots`, nothing certified", "time_car_by_numpy()")
     run(task, "scipy `brentq`, brackets given, one process", f"time_brentq({most})")
     # Differences would tell more, but small ones are mostly noise.
-    growth = whole.taken / (2 * ours[most // 2].taken)
+    growth = whole.taken / (2 * wholes[most // 2].taken)
     text = f"{name}: time per point over that of half as many"
     claims.append(Claim(text, LINEAR_WITHIN, growth, larger_is_better=False))
     claims.append(Claim(f"{name} [s]", CEILING, whole.taken, larger_is_better=False, is_ratio=False))

@@ -21,12 +21,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from math import inf, log, pi
+from math import inf, log, pi, prod
 from typing import Literal
 
 from flint import acb, acb_series, arb
 
-from symflex.algebra import Factored
+from symflex.algebra import LAPLACE, Factored, KernelTable
 from symflex.algebra.vanishing import OriginSeries
 from symflex.balls import UndecidedError, Value, at_centre, ball, covered, expansion, precision
 from symflex.loops.boxes import BITS, Box, CharacteristicFunction, share_taken
@@ -42,7 +42,7 @@ from symflex.roots.passivity import EnergyProof, energy_proof
 from symflex.roots.plane.local_roots import prove_simple
 from symflex.roots.pole_zero_map import StabilityVerdict, chosen, hidden_poles, is_right, right_beyond
 from symflex.roots.polynomial_roots import in_order
-from symflex.roots.root import FLOAT_BITS, are_apart, mirror_images, root_at_zero
+from symflex.roots.root import are_apart, mirror_images, root_at_zero
 from symflex.sweep.design import Point
 from symflex.transfer import AnyTransferFunction, BoundTransferFunction, TransferFunction
 from symflex.transfer.enclose import enclosure
@@ -52,6 +52,7 @@ DIGITS = 25  # of roots, with which their nearest doubles are known nearly alway
 BEYOND = (1.2, 1.08, 1.03)  # radius of a contour over the size of the outermost root, the first that serves
 SEARCHED = 8.0  # how far a search of both sides may come, over the size of the outermost root
 NARROWEST = 1e-4  # part of a contour on which the function is not looked at any closer
+POINTS = 4  # from which those at the next are foretold
 STEPS = 4  # between points that one proof is tried for at first
 PARTS = 4  # into which a contour is cut at first, and as many for every root
 WIDENED = 1 + 2.0**-40  # makes up for the rounding of angles
@@ -109,7 +110,7 @@ class Continuation:
         if numbers is None or (isinstance(self.region, Modes) and not guesses):
             return None
         bound = self._bound(numbers)
-        own, other = (KernelFunction(bound, _without_s(side)) for side in self._sides)
+        own, other = (KernelFunction(bound, _moving(side, self.tf.kernels)) for side in self._sides)
         roots = self._roots((own, other), [acb(s.real, s.imag) for s in guesses])
         order = own.order()
         if roots is None or order is None or order != own.power * (at_zero - self._powers_of_s):
@@ -389,9 +390,10 @@ def _slope(value: Value) -> acb:
     return value[1] if isinstance(value, acb_series) else acb(0)
 
 
-def _without_s(side: Factored) -> Factored:
-    s = side.ring.context.gen(0)
-    return side.filter(lambda factor: factor != s)
+def _moving(side: Factored, kernels: KernelTable) -> Factored:
+    """Return the factors that may vanish: no powers of s alone, nor of parameters, none of which is 0."""
+    s, moving = side.ring.context.gen(0), {LAPLACE, *kernels.generators}
+    return side.filter(lambda f: f != s and not (len(f) == 1 and moving.isdisjoint(side.ring.used_in([f]))))
 
 
 def _count(roots: Sequence[Root]) -> int:
@@ -419,15 +421,26 @@ def _turns(function: KernelFunction, height: float) -> int | None:
 
 
 def _continued(way: Sequence[Carried], numbers: Sequence[Fraction]) -> list[acb]:
-    """Return where roots are next: on along the line through the last two points, or where they were."""
-    *_, last = way
-    before = way[max(len(way) - 2, 0)]
-    places, earlier = ([acb(r.re.mid(), r.im.mid()) for r in at.roots] for at in (last, before))
-    share = _share(before.numbers, last.numbers, numbers)
-    if share is None:
-        return places
-    with precision(FLOAT_BITS):
-        return [(s + (s - t) * float(share - 1)).mid() for s, t in zip(places, earlier, strict=True)]
+    """Return where roots are next, by a polynomial through the last points on a line; or where they were."""
+    last, before = way[-1], way[max(len(way) - 2, 0)]
+    goal = _share(before.numbers, last.numbers, numbers)
+    known: dict[Fraction, Carried] = {}
+    for at in reversed(way[-POINTS:] if goal is not None else ()):
+        share = _share(before.numbers, last.numbers, at.numbers)
+        if share is None or share in known:
+            break
+        known[share] = at
+    if goal is None or not known:
+        return [acb(root.re.mid(), root.im.mid()) for root in last.roots]
+    with precision(BITS):
+        # Lagrange's weights.
+        factors = [[(goal - x) / (own - x) for x in known if x != own] for own in known]
+        weights = [ball(prod(each, start=Fraction(1))) for each in factors]
+        rows = zip(*(at.roots for at in known.values()), strict=True)
+        return [
+            sum((w * r.enclosure().mid() for w, r in zip(weights, row, strict=True)), acb(0)).mid()
+            for row in rows
+        ]
 
 
 def _share(start: Sequence[Fraction], end: Sequence[Fraction], at: Sequence[Fraction]) -> Fraction | None:

@@ -160,7 +160,7 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
 
 CHUNKS = 200  # into about how many a sweep is cut
 LARGEST_CHUNK = 1000
-IN_A_ROW = 25  # points of which the first takes no more than all others, as a rule
+IN_A_ROW = 50  # points of which the first takes no more than all others, as a rule
 AHEAD = 4  # chunks per worker that are handed out before any is back
 MOST_BETWEEN = (40, 400)  # points solved between others, where names are in doubt: a tenth, within these
 MINUTE = 60.0
