@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from symflex.data.fitting.least_squares import triangle
 from symflex.data.fitting.problem import FitProblem
 from symflex.data.fitting.resonances import Complex, Real, Resonances
 from symflex.data.fitting.starts import REAL, solved_real
@@ -147,7 +148,7 @@ class _System:
         whole = np.concatenate((self.columns, target[:, None]), axis=1)
         stacked = np.concatenate((whole.real, whole.imag))
         norms = np.maximum(np.linalg.norm(stacked, axis=0), np.finfo(float).tiny)
-        _, upper = np.linalg.qr(stacked / norms)
+        upper = triangle(stacked / norms)
         return [self._coefficients(upper, norms, shape) for shape in shapes]
 
     def _coefficients(self, upper: Real, norms: Real, shape: tuple[int, int]) -> tuple[float, Real]:

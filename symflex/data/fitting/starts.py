@@ -24,6 +24,7 @@ from scipy.linalg import eig
 from scipy.signal import find_peaks, savgol_filter
 
 from symflex.budget import spend
+from symflex.data.fitting.least_squares import triangle
 from symflex.data.fitting.resonances import Complex, Real, Resonances, Values, Whole
 
 if TYPE_CHECKING:
@@ -314,24 +315,23 @@ def relocated(
     if not poles.size:
         return poles
     quotients = [problem.quotient(r) for r in range(len(problem.lines))]
+    weights = [_weights(problem, r) for r in range(len(problem.lines))]
+    total = sum(float(np.linalg.norm(w * np.abs(q))) ** 2 for w, q in zip(weights, quotients, strict=True))
+    size = sum(line.omega.size for line in problem.lines)
     for _ in range(iterations):
         spend()
-        rows, right = [], []
-        total = 0.0
-        for r, line in enumerate(problem.lines):
-            weight = _weights(problem, r)
+        rows, right, sums = [], [], []
+        for line, weight, quotient in zip(problem.lines, weights, quotients, strict=True):
             local = _local(problem, line.omega_seen, poles, powers)
-            shared = np.concatenate((_basis(line.omega_seen, poles), np.ones((line.omega.size, 1))), axis=1)
-            block = weight[:, None] * np.concatenate((local, -quotients[r][:, None] * shared), axis=1)
-            block = np.concatenate((block.real, block.imag))
+            basis = local[:, : int(np.sum(_widths(poles)))]
+            shared = np.concatenate((basis, np.ones((line.omega.size, 1))), axis=1)
+            sums.append(shared.real.sum(axis=0))
+            block = weight[:, None] * np.concatenate((local, -quotient[:, None] * shared), axis=1)
             # Only what the shared part needs is kept of each response (Deschrijver et al. 2008).
-            _, upper = np.linalg.qr(block)
+            upper = triangle(np.concatenate((block.real, block.imag)))
             rows.append(upper[local.shape[1] :, local.shape[1] :])
             right.append(np.zeros(rows[-1].shape[0]))
-            total += float(np.linalg.norm(weight * np.abs(quotients[r]))) ** 2
-        size = sum(line.omega.size for line in problem.lines)
         mean = np.sqrt(total) / size
-        sums = [np.append(_basis(x.omega_seen, poles).real.sum(axis=0), x.omega.size) for x in problem.lines]
         rows.append(mean * np.sum(sums, axis=0)[None, :])
         right.append(np.array([mean * size]))
         matrix, target = np.concatenate(rows), np.concatenate(right)
@@ -340,7 +340,7 @@ def relocated(
         a, b = _state_matrix(poles)
         direct = solution[-1] if abs(solution[-1]) > SETTLED else SETTLED
         eigenvalues = np.linalg.eigvals(a - np.outer(b, solution[:-1]) / direct)
-        moved = _upper(np.asarray(eigenvalues, np.complex128))
+        moved = _upper(np.asarray(eigenvalues, np.complex128), problem.band[0])
         if not np.isfinite(moved).all():
             break
         is_settled = moved.size == poles.size and np.max(np.abs(moved - poles) / np.abs(poles)) < UNMOVED
@@ -350,9 +350,10 @@ def relocated(
     return poles
 
 
-def _upper(roots: Complex) -> Complex:
+def _upper(roots: Complex, least: float) -> Complex:
     """Return the stable poles on the real axis and above it that eigenvalues of a real matrix stand for."""
-    scale = max(float(np.abs(roots).max()), np.finfo(float).tiny)
+    # An integrator's pole next to 0 stays a number that one can divide by.
+    scale = max(float(np.abs(roots).max()), least)
     is_real = np.abs(roots.imag) <= REAL * np.abs(roots)
     pairs = roots[~is_real & (roots.imag > 0)]
     damped = np.maximum(np.abs(pairs.real), LOWEST_DAMPING * np.abs(pairs))
