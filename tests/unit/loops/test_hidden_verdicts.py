@@ -289,8 +289,7 @@ def test_a_page_says_of_poles_it_does_not_see_that_they_may_be_hidden() -> None:
     model = CASES["a second loop with a delay"].model("0.5")
     pair = model.transfer_functions[0]
     contents = JAVASCRIPT.contents(model, pipeline.derive_all(model, [pair]))
-    located = page._located(model, [pair])
-    (shown,) = page._data(contents, contents.names(RESERVED)[1], located)["functions"]
+    (shown,) = page._data(contents, contents.names(RESERVED)[1], [pair])["functions"]
     assert (shown["hides"], shown["verdict"]["word"]) == (True, "stable")
 
 
