@@ -85,6 +85,30 @@ def test_a_patch_holds_the_function_on_discs_up_to_their_rims():
         assert abs(value - np.exp((1 + 2j + s / 8) * (2 + p / 8))) < made.error < 1e-3
 
 
+def test_the_error_of_a_patch_holds_where_its_bound_is_nearly_attained():
+    # 1/(4.6 - p) is finite on a disc of 4 alone, so that coefficients fall as slowly as the bound allows.
+    made = patch(lambda points, p: [1 / (acb(4.6) - p) for _ in points], 0j, 1.0, 0.0, 1.0)
+    assert made is not None
+    for p in np.exp(2j * pi * np.arange(7) / 7):
+        value = sum(c * p**k for k, c in enumerate(made.coefficients[0]))
+        assert abs(value - 1 / (4.6 - p)) < made.error < 1e-5
+
+
+def test_a_patch_is_as_wide_as_discs_of_both_and_its_error():
+    # |s + 2 p - v| may be 0 up to v = 0.1 + 2*0.05, and s^2/2 + p s turns up to s = 0.1 + 0.05.
+    line = patch(lambda points, p: [s + 2 * p for s in points], 0j, 1.0, 0.0, 1.0)
+    bowl = patch(lambda points, p: [s * s / 2 + p * s for s in points], 0j, 1.0, 0.0, 1.0)
+    assert line is not None and bowl is not None
+    for share, is_open in [(0.999, True), (1.001, False)]:
+        assert line.on(share * 0.2, 0.1, 0.0, 0.05)[0].may_vanish is is_open
+        assert bowl.on(share * 0.15, 0.1, 0.0, 0.05)[0].may_turn is is_open
+    steep = patch(lambda points, p: [s + 1 / (4.6 - p) - 1 / acb(4.6) for s in points], 0j, 1.0, 0.0, 1.0)
+    assert steep is not None
+    near = steep.error / 2 * 4.6**2  # where its value is half of the error
+    assert steep.on(0j, 0.0, near, 0.0)[0].may_vanish
+    assert not steep.on(0j, 0.0, 9 * near, 0.0)[0].may_vanish
+
+
 def test_a_patch_tells_where_a_function_and_its_slope_vanish():
     def square(points, p):
         return [s * s + p for s in points]
