@@ -102,6 +102,9 @@ def test_a_patch_is_as_wide_as_discs_of_both_and_its_error():
     for share, is_open in [(0.999, True), (1.001, False)]:
         assert line.on(share * 0.2, 0.1, 0.0, 0.05)[0].may_vanish is is_open
         assert bowl.on(share * 0.15, 0.1, 0.0, 0.05)[0].may_turn is is_open
+    # Off the middle of both, where s + 2 p = 0.
+    assert line.on(-0.6 + 0j, 0.0, 0.3, 0.0)[0].may_vanish
+    assert not line.on(0.6 + 0j, 0.0, 0.3, 0.0)[0].may_vanish
     steep = patch(lambda points, p: [s + 1 / (4.6 - p) - 1 / acb(4.6) for s in points], 0j, 1.0, 0.0, 1.0)
     assert steep is not None
     near = steep.error / 2 * 4.6**2  # where its value is half of the error

@@ -52,3 +52,23 @@ def test_what_is_reversed_has_determinants_alike_at_s_and_minus_s(odd, start, en
     is_alike = min(abs(one - other), abs(one + other)) < 1e-9 * abs(one)
     assert found == (is_alike and "s" in odd)
     assert found == (end == HELD and "s" in odd)  # what leaves a free end takes energy along
+
+
+@pytest.mark.parametrize(("end", "expected"), [("w(1) = y_0", True), ("w'(1) = y_0", False)])
+def test_a_string_that_moves_is_reversed_between_held_ends_only(end, expected):
+    # Waves exp(s x/(1 - v)) and exp(-s x/(1 + v)): held, poles are at j n pi (1 - v^2); else the square of
+    # exp(s/(1 - v^2)) is -(1 - v)/(1 + v), which is no number on the unit circle.
+    model = loads(
+        f"""symflex = 1
+        parameters = {{ v = 0.5 }}
+        inputs = {{ y_0 = {{}} }}
+        outputs = {{ Y = "w(1/2)" }}
+        [fields.w]
+        domain = ["0", "1"]
+        equation = "(1 - v^2)*w'' - 2*v*s*w' - s^2*w = 0"
+        conditions = ["w(0) = 0", "{end}"]
+        """
+    )
+    function = characteristic(model, ("v",), ((Fraction(1, 4), Fraction(3, 4)),))
+    tf, factors = function.at_rest
+    assert [is_reversed(Factored.polynomial(tf.ratio.ring, f), tf.kernels) for f in factors] == [expected]
