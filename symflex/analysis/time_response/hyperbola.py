@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from math import acosh, ceil, log, pi, sin
+from math import acosh, ceil, inf, log, pi, sin
 
 from flint import acb, acb_mat, arb
 
@@ -29,6 +29,7 @@ from symflex.transfer import BoundTransferFunction
 
 MIDDLE, ASIDE, STEEPEST = 0.08 * pi, 0.07 * pi, 0.66 * pi  # of the path, of turned hyperbolas, beyond arg z
 TURNS = (12.0, 2000.0)  # mu times the last time on a path: the first takes fewest points, the second seconds
+SMALLEST = 1e-300  # radius of a value beside which nobody sees any: exponentials have smaller ones
 BAND, SPARE = 6.0, 10.0  # ratio of last time to first on a path, and ln of bounds over values
 
 
@@ -89,7 +90,7 @@ def _last_before(asked: Asked, end: int, digits: int, far: FunctionFarOut) -> li
         scale *= arb(nearest) ** ball(min(power, Fraction(0)))
         if is_start:  # the bound of the integral along a path in 1/t grows with t
             size_up_to = scale * arb(turn).exp() * (turn * arb(MIDDLE).sin()).bessel_k(most)
-            return [arb(0, size_up_to.upper() if size_up_to.is_finite() else arb("inf"))]
+            return [arb(0, max(float(size_up_to.upper()) if size_up_to.is_finite() else inf, SMALLEST))]
     small = digits * log(10) + SPARE
     step = 2 * pi * ASIDE / (turn + small)
     count = ceil(acosh((1 + small / (mu * seconds[start])) / sin(MIDDLE)) / step)

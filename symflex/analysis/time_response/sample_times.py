@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 from flint import acb, arb
 
+from symflex.algebra import degree_in
 from symflex.analysis.response import real_numbers, roots_if_found
 from symflex.balls import at_centre, ball
 from symflex.errors import Diagnostic, UsageError
@@ -173,9 +174,12 @@ def _delays(bound: AnyBoundFunction) -> list[float]:
     if not bound.is_reduced or bound.is_rational:
         return []
     evaluator, delays = bound.kernel_values(), []
-    values = {"s": acb(1), **{name: acb(c) for name, c in evaluator.constants.items()}}
+    constants = {name: acb(c) for name, c in evaluator.constants.items()}
     for kernel in bound.kernels.kernels:
         if kernel.function == "exp":
-            delay = evaluator.value(kernel.dispersion.shift, values) * evaluator.value(kernel.length, values)
-            delays.append(abs(float(at_centre(delay).real)) ** bound.sheets)
+            shift = kernel.dispersion.shift * kernel.length
+            before, after = (evaluator.value(shift, {"s": acb(x), **constants}) for x in (0, 1))
+            # The root of s to a power: s itself in a delay, and a square root where its root decays.
+            power = max(sum(degree_in(f, 0) * e for f, e in shift.factors), 1)
+            delays.append(abs(float(at_centre(after - before).real)) ** (bound.sheets / power))
     return delays

@@ -11,7 +11,8 @@ from mpmath import erf, erfc, exp, gamma, inf, mpf, nsum, pi, sqrt
 
 from symflex import loads
 from symflex.analysis.time_response import time_response
-from symflex.analysis.time_response.sample_times import SampleTimes
+from symflex.analysis.time_response.enclosed_response import response_text
+from symflex.analysis.time_response.sample_times import SampleTimes, default_until
 from symflex.errors import ModelError
 
 RESPONSES = {
@@ -84,6 +85,17 @@ def test_a_delay_shifts_a_response_with_a_root_of_s(expression):
     with mpmath.workdps(40):
         exact = [0, 0, *(float(LATE[expression](mpf(t) - 0.25)) for t in (0.5, 3.0))]
     assert response.values == pytest.approx(exact, rel=1e-12, abs=1e-12)
+
+
+def test_a_response_at_the_very_moment_of_a_delay_prints():
+    # A long cable with skin effect: erfc(a/(2*sqrt(t - T))) from T = 10 ns on, and nearly nothing about T.
+    bound = function("exp(-s*1e-8)*exp(-2e-5*sqrt(s*k))*u").bound
+    response = time_response(bound, "step", SampleTimes.evenly(Fraction(3, 10**8), 4))
+    with mpmath.workdps(40):
+        exact = [0, 0, *(erfc(mpf("1e-5") / sqrt(mpf(t))) for t in ("1e-8", "2e-8"))]
+    assert response.values == pytest.approx(list(map(float, exact)), rel=1e-12, abs=1e-12)
+    assert "2e-08  0.887537083982" in response_text(response)
+    assert default_until(bound) == pytest.approx(5e-8)  # five times the delay, and a^2 = 0.4 ns is less
 
 
 def test_terms_of_a_sum_with_a_root_of_s_come_each_after_its_own_delay():
