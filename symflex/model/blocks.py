@@ -276,7 +276,7 @@ def _load(reader: Reader, path_text: Text, origin: Origin) -> Model | None:
         hint = "copy the innermost models into the files that use them"
         reader.note("SF103", message, path_text.span, hint)
         return None
-    loads, own = origin.loads, origin.ancestors[-1]
+    loads, outer = origin.loads, origin.ancestors[-1]
     if path not in loads.models and path not in loads.failed:
         try:
             source = _read(reader, shown, path_text)
@@ -292,8 +292,8 @@ def _load(reader: Reader, path_text: Text, origin: Origin) -> Model | None:
                 reader.note("SF258", message, path_text.span, "run 'symflex check' on that file to see which")
         if path not in loads.models:
             loads.failed.add(path)
-    loads.blocks[own] = loads.blocks.get(own, 0) + 1 + loads.blocks.get(path, 0)
-    if loads.blocks[own] > BLOCK_LIMIT:
+    loads.blocks[outer] = loads.blocks.get(outer, 0) + 1 + loads.blocks.get(path, 0)
+    if loads.blocks[outer] > BLOCK_LIMIT:
         message = f"more than {BLOCK_LIMIT} model blocks, including nested ones"
         hint = "name a product of them once and use that name"
         reader.note("SF103", message, path_text.span, hint)

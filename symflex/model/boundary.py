@@ -137,36 +137,36 @@ def check_points(
     noted = {p.span for p in reader.problems}
     inside: set[tuple[str, Expression]] = set()
     for call in (n for n in names(expression) if isinstance(n, Call)):
-        stretch, place = owners.get(call.name), call.argument
-        if stretch is None or (stretch.what, place) in inside or place.span in noted:
+        stretch, position = owners.get(call.name), call.argument
+        if stretch is None or (stretch.what, position) in inside or position.span in noted:
             continue
-        if depends_on_s(place, around.varying):
-            reader.note("SF249", "a point along x cannot depend on s", place.span)
+        if depends_on_s(position, around.varying):
+            reader.note("SF249", "a point along x cannot depend on s", position.span)
             continue
         sides = ((stretch.start, "before the start", -1), (stretch.end, "beyond the end", 1))
         wrong = [
-            (end, word) for end, word, sign in sides if around.line.sign(_difference(place, end)) == sign
+            (end, word) for end, word, sign in sides if around.line.sign(_difference(position, end)) == sign
         ]
         for end, word in wrong:
-            point, limit = _named(place, around.line), _named(end, around.line)
-            reader.note("SF240", f"the point {point} lies {word} of {stretch.what}, {limit}", place.span)
+            point, limit = _named(position, around.line), _named(end, around.line)
+            reader.note("SF240", f"the point {point} lies {word} of {stretch.what}, {limit}", position.span)
         if not wrong:
-            inside.add((stretch.what, place))
+            inside.add((stretch.what, position))
 
 
 def _difference(left: Expression, right: Expression) -> Expression:
     return Sum((lower(left), Negative(lower(right))))
 
 
-def _written(place: Expression) -> str:
-    if isinstance(place, QuantityLiteral) or measured(place):
-        return place.span.text if place.span else format_expression(place)
-    return format_expression(place)
+def _written(position: Expression) -> str:
+    if isinstance(position, QuantityLiteral) or measured(position):
+        return position.span.text if position.span else format_expression(position)
+    return format_expression(position)
 
 
-def _named(place: Expression, line: Line) -> str:
+def _named(position: Expression, line: Line) -> str:
     """Return a place as written, with its value when it has one that differs from what is written."""
-    value, text = line.value(place), _written(place)
+    value, text = line.value(position), _written(position)
     shown = "" if value is None else f"{float(value):.6g}"
     return f"'{text}'" if value is None or shown == text else f"'{text}' ({shown})"
 
@@ -298,9 +298,9 @@ def _check_counts(
     joined = _joined([f.name for f in fields], [{owners[call.name] for call in c.calls} for c in conditions])
     for group in joined:
         members = [f for f in fields if f.name in group]
-        own = [c for c in conditions if owners[c.calls[0].name] in group]
+        of_group = [c for c in conditions if owners[c.calls[0].name] in group]
         try:
-            _check_group(reader, members, orders, own, point)
+            _check_group(reader, members, orders, of_group, point)
         except ZeroDivisionError:
             continue  # reported where the equations are assembled
 
@@ -363,9 +363,9 @@ def _has_tip(field: FieldProblem, point: RandomPoint) -> bool:
             along.condition(Equation(*(substitute(side, {COORDINATE: lower(end)}) for side in e.children)))
             for e in field.equations
         ]
-        whole = [along.condition(e) for e in field.equations]
+        conditions = [along.condition(e) for e in field.equations]
         for unknown in field.unknowns:
-            highest = max(k[2] for f in whole for k in f if isinstance(k, tuple) and k[0] == unknown)
+            highest = max(k[2] for f in conditions for k in f if isinstance(k, tuple) and k[0] == unknown)
             if not any((unknown, 0, highest) in f for f in forms):
                 return True
     return False

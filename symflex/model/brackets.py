@@ -142,8 +142,8 @@ class _Opener:
             message = "this is the value at one point; this place needs something that varies along x"
             hint = "leave the point out; what holds at a point belongs in the conditions"
         if message:
-            place = fixed[0].span if fixed else bracket.span
-            self.problems.append(Diagnostic("SF241", message, place, hint))
+            location = fixed[0].span if fixed else bracket.span
+            self.problems.append(Diagnostic("SF241", message, location, hint))
             return bracket
         slope = self._slope(bracket)
         if bracket.point is None or self.problems:
@@ -192,8 +192,8 @@ class _Opener:
         for i, factor in enumerate(factors):
             slope = self.slope(factor)
             if slope is not None:
-                rest = (*factors[:i], *factors[i + 1 :])
-                terms.append(_placed(product_of([*rest, slope]), span))
+                others = (*factors[:i], *factors[i + 1 :])
+                terms.append(_placed(product_of([*others, slope]), span))
         return sum_of(terms) if terms else None
 
     def _quotient(self, above: Expression, below: Expression) -> Expression | None:

@@ -70,9 +70,13 @@ def with_branches(draft: Draft, taken: Collection[str]) -> Draft:
     roots = {n: found for e in places for n in nodes(substitute(e, moving)) if (found := _radical(n))}
     order = lcm(*(exponent.denominator for exponent, _, _ in roots.values()))
     # Without a shift, roots of constants are factors, of which only square roots have a name.
-    based = (own for own in roots.values() if own[0].denominator != HALF or not is_number(own[2], 0))
+    based = (
+        radical
+        for radical in roots.values()
+        if radical[0].denominator != HALF or not is_number(radical[2], 0)
+    )
     _, a, b = next(based, (0, number(1), number(0)))
-    factors = {n: factor for n, own in roots.items() if (factor := _factor(own, a)) is not None}
+    factors = {n: factor for n, radical in roots.items() if (factor := _factor(radical, a)) is not None}
     shifts = {format_expression(quotient(b, a)) for _, a, b in roots.values()}
     if len(shifts) != 1 or len(factors) < len(roots) or order > MOST_SHEETS:
         return draft
@@ -175,7 +179,7 @@ def _gathered(terms: Iterable[tuple[int, Expression]]) -> dict[int, Expression]:
     by_power: dict[int, list[Expression]] = {}
     for power_, coefficient in terms:
         by_power.setdefault(power_, []).append(coefficient)
-    return {m: sum_of(own) for m, own in by_power.items()}
+    return {m: sum_of(summands) for m, summands in by_power.items()}
 
 
 def _function(node: Expression, root: str, decay: Decay) -> Expression | None:
@@ -189,8 +193,8 @@ def _function(node: Expression, root: str, decay: Decay) -> Expression | None:
     decays = [(_is_negative(a), m, a) for m, a in powers.items() if m]
     each = [(turned, decay(negative(a) if turned else a, m)) for turned, m, a in decays]
     if node.name == "exp":
-        rest = [Call("exp", powers[0])] if 0 in powers else []
-        return product_of([*(e if turned else quotient(one, e) for turned, e in each), *rest])
+        constant = [Call("exp", powers[0])] if 0 in powers else []
+        return product_of([*(e if turned else quotient(one, e) for turned, e in each), *constant])
     if len(powers) > 1:
         return None
     ((is_negative, e),) = each

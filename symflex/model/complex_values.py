@@ -67,8 +67,8 @@ def with_real_values(draft: Draft) -> Draft:
     blocks = list(draft.blocks)
     for i, block in enumerate(blocks):
         if block.name in real:
-            whole = real[block.name]
-            num, den = whole.children if isinstance(whole, Quotient) else (whole, number(1))
+            gain = real[block.name]
+            num, den = gain.children if isinstance(gain, Quotient) else (gain, number(1))
             blocks[i] = replace(block, values=(("num", num), ("den", den)))
     signals = tuple(replace(x, expression=reading.real(x.expression)) for x in draft.signals)
     outputs = tuple(replace(x, expression=reading.real(x.expression)) for x in draft.outputs)
@@ -115,8 +115,8 @@ class _ComplexNames:
             case Sum(terms) | Product(terms):
                 join = sum_of if isinstance(node, Sum) else product_of
                 parts = [self.real(x) for x in terms]
-                rest = [x for x in parts if self.has_unit(x)]
-                joint = self._expanded(join(rest)) if len(rest) > 1 else None
+                imaginary = [x for x in parts if self.has_unit(x)]
+                joint = self._expanded(join(imaginary)) if len(imaginary) > 1 else None
                 return join([*(x for x in parts if not self.has_unit(x)), joint]) if joint else join(parts)
             case Negative(operand):
                 return negative(self.real(operand))
@@ -143,11 +143,11 @@ class _ComplexNames:
         above, below = (b, d) if c.is_zero() else (a, c)
         shared = above.gcd(below)
         above, below = above / shared, below / shared
-        left = leaves.in_s(Factored.polynomial(leaves.ring, shared))
+        remainder = leaves.in_s(Factored.polynomial(leaves.ring, shared))
         if max(int(e) for x in (above, below) for e in x.degrees()) > EXPONENT_LIMIT:
             return None
         scale = Fraction(int(below.leading_coefficient()))
-        kept = [leaves.expression(x, ONE) for x in (hidden, left.expand()) if leaves.vary(x)]
+        kept = [leaves.expression(x, ONE) for x in (hidden, remainder.expand()) if leaves.vary(x)]
         return quotient(*(product_of([*kept, leaves.expression(x, scale)]) for x in (above, below)))
 
     def _read(self, node: Expression) -> tuple[Dynamics[Factored], _Leaves]:

@@ -71,13 +71,13 @@ class Constants:
     def declare(self, parameters: Iterable[DeclaredParameter], converted: Collection[str]) -> None:
         """Take parameters with their values, in radians those that are converted from cycles."""
         for p in parameters:
-            own = self.declared[p.name] = p.resolve(is_converted=p.name in converted)
+            parameter = self.declared[p.name] = p.resolve(is_converted=p.name in converted)
             self.expressions.setdefault(p.name)
             if p.assume != "positive":
                 self.signed.add(p.name)
-            if own.value is not None:
+            if parameter.value is not None:
                 with precision(BITS):
-                    self.known[p.name] = self.value(exact_expression(own.value), {}, None)
+                    self.known[p.name] = self.value(exact_expression(parameter.value), {}, None)
 
     def value(self, expression: Expression, known: dict[str, arb], random: Random | None) -> arb:
         """Return an expression's value, where names without one have random ones; else KeyError."""
@@ -135,8 +135,8 @@ class Constants:
 
         if not self._always(holds, expression, scaled(names)):
             return None
-        own = {p for p in names if not self._always(holds, expression, scaled(names - {p}))}
-        return own if self._always(holds, expression, scaled(own)) else names
+        deciding = {p for p in names if not self._always(holds, expression, scaled(names - {p}))}
+        return deciding if self._always(holds, expression, scaled(deciding)) else names
 
     def _always(
         self,

@@ -249,8 +249,8 @@ class Cycles(AsWritten):
             turned = reading.open if name in self.eager else frozenset[int]()
             return replace(definition, expression=_chosen(reading, written, turned))
         if reading.degree and not reading.problem:
-            own = self.measure(written)
-            self.known[name] = Factor(Name(name), ONE, dimension=own, hidden=reading.degree)
+            dimension = self.measure(written)
+            self.known[name] = Factor(Name(name), ONE, dimension=dimension, hidden=reading.degree)
         return replace(definition, expression=self._read(reading, written))
 
     def _defined(self, name: str, written: QuantityLiteral) -> QuantityLiteral:
@@ -341,11 +341,11 @@ class Cycles(AsWritten):
             case Name(name) if name == LAPLACE:
                 return Factor(node, exponent, "s", PER_SECOND)
             case Name(name) if name in self.known:
-                own = self.known[name]
-                if own.turned is None:
-                    return _raised(own, node, exponent)
-                turned = replace(own.turned, span=node.span)
-                return replace(_raised(own, replace(own.node, span=node.span), exponent), turned=turned)
+                factor = self.known[name]
+                if factor.turned is None:
+                    return _raised(factor, node, exponent)
+                turned = replace(factor.turned, span=node.span)
+                return replace(_raised(factor, replace(factor.node, span=node.span), exponent), turned=turned)
             case Name(name):
                 is_decimal = _is_decimal_of_pi(self.numbers.get(name, ONE), CLOSER)
                 own_dimension, is_length = self.measure(node), self.is_length(node)
@@ -359,8 +359,8 @@ class Cycles(AsWritten):
             case Call(name, argument):
                 read = with_children(node, [self.read(argument, is_delay=name == "exp")])
                 return Factor(read, exponent, dimension=DIMENSIONLESS if name in FUNCTIONS else None)
-            case Power(base, own):
-                return Factor(with_children(node, [self.read(base), self.read(own)]), exponent)
+            case Power(base, power):
+                return Factor(with_children(node, [self.read(base), self.read(power)]), exponent)
         return Factor(node, exponent)
 
     def _sum(self, node: Sum, exponent: Fraction) -> Factor:
@@ -396,9 +396,9 @@ def converted(
     counting = {n: q for n, q in quantities.items() if q is not None and counts_cycles(q)}
     shared = {p.name: p for b in draft.blocks if b.submodel for p in b.submodel.parameters}
     for name, p in shared.items():
-        own = one_of(p.written_unit) if p.written_unit else None
-        if name not in counting and own is not None and counts_cycles(own):
-            counting[name] = own  # in radians in that model, and so in this one
+        quantity = one_of(p.written_unit) if p.written_unit else None
+        if name not in counting and quantity is not None and counts_cycles(quantity):
+            counting[name] = quantity  # in radians in that model, and so in this one
     turned = {n for n in counting if n in shared and not shared[n].cycles}
     turned |= _alone(draft, [n for n, q in counting.items() if q.cycles < 0]) - shared.keys()
     pure = (p for p in draft.declared if p.quantity is not None and not p.written_unit)
@@ -410,8 +410,8 @@ def converted(
     in_metres = constant_measure(draft.declared, draft.inherited, draft.definitions, bare)
 
     def is_length(expression: Expression) -> bool:
-        own = in_metres(expression)
-        return own is not None and own != DIMENSIONLESS and own == METRE**own.m
+        quantity = in_metres(expression)
+        return quantity is not None and quantity != DIMENSIONLESS and quantity == METRE**quantity.m
 
     def started(eager: Collection[str], notes: Reader) -> Cycles:
         made = Cycles(notes, numbers, measure, is_length, eager)
@@ -446,8 +446,8 @@ def _parts(node: Expression) -> Sequence[tuple[Expression, Fraction]] | None:
             return [(f, ONE) for f in factors]
         case Quotient(above, below):
             return ((above, ONE), (below, -ONE))
-        case Power(base, exponent) if (own := rational_exponent(exponent)) is not None:
-            return ((base, own),)
+        case Power(base, exponent) if (rational := rational_exponent(exponent)) is not None:
+            return ((base, rational),)
         case Call("sqrt", argument, 0):
             return ((argument, HALF),)
     return None
@@ -474,7 +474,7 @@ def _number(node: Expression, value: Fraction, exponent: Fraction) -> Factor:
     evens = 0
     while value and value.denominator == 1 and value.numerator % 2 ** (evens + 1) == 0:
         evens += 1
-    own = Factor(
+    factor = Factor(
         node,
         ONE,
         "number",
@@ -483,7 +483,7 @@ def _number(node: Expression, value: Fraction, exponent: Fraction) -> Factor:
         value=value,
         is_decimal_of_pi=_is_decimal_of_pi(value),
     )
-    return _raised(own, node, exponent)
+    return _raised(factor, node, exponent)
 
 
 def _is_decimal_of_pi(value: Fraction, close: float = CLOSE) -> bool:
@@ -508,16 +508,16 @@ def _raised(factor: Factor, node: Expression, exponent: Fraction) -> Factor:
 
 def _merged(factors: Iterable[Factor]) -> Factor:
     """Return numbers as one."""
-    whole = Factor(number(1), ONE, "number", DIMENSIONLESS)
+    merged = Factor(number(1), ONE, "number", DIMENSIONLESS)
     for f in factors:
-        whole = replace(
-            whole,
-            pis=whole.pis + f.pis,
-            twos=(whole.twos[0] + f.twos[0], whole.twos[1] + f.twos[1]),
-            value=whole.value * f.value,
-            is_decimal_of_pi=whole.is_decimal_of_pi or f.is_decimal_of_pi,
+        merged = replace(
+            merged,
+            pis=merged.pis + f.pis,
+            twos=(merged.twos[0] + f.twos[0], merged.twos[1] + f.twos[1]),
+            value=merged.value * f.value,
+            is_decimal_of_pi=merged.is_decimal_of_pi or f.is_decimal_of_pi,
         )
-    return whole
+    return merged
 
 
 def _with_period(factors: list[Factor], exponent: Fraction) -> list[Factor]:

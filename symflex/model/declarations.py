@@ -158,7 +158,7 @@ def with_formulas_defined(sections: Mapping[str, TableValue | None]) -> dict[str
     if parameters is None:
         return dict(sections)
     declared = {*parameters.keys(), *(definitions.keys() if definitions else ())}
-    own, moved = [], []
+    kept, moved = [], []
     for entry in parameters.entries:
         table = entry.value if isinstance(entry.value, TableValue) else None
         inner = table.get("value") if table else entry
@@ -171,20 +171,20 @@ def with_formulas_defined(sections: Mapping[str, TableValue | None]) -> dict[str
         given = used - {"pi", *FUNCTIONS}
         is_formula = bool(given) and given <= declared - {entry.key} and not may_be_units
         if not is_formula or is_twice or not NAME.match(entry.key):
-            own.append(entry)
+            kept.append(entry)
         elif table is None:
             moved.append(entry)
         elif {*table.keys()} <= {"value", "doc", "latex"}:
             parts = (replace(e, key="expr") if e is inner else e for e in table.entries)
             moved.append(replace(entry, value=TableValue(tuple(parts), table.span)))
         else:
-            own.append(entry)
+            kept.append(entry)
     if not moved:
         return dict(sections)
     others = definitions.entries if definitions else ()
     return {
         **sections,
-        "parameters": TableValue(tuple(own), parameters.span),
+        "parameters": TableValue(tuple(kept), parameters.span),
         "definitions": TableValue((*others, *moved), (definitions or parameters).span),
     }
 
@@ -252,9 +252,11 @@ def _limits(reader: Reader, table: TableValue, p: DeclaredParameter) -> tuple[Qu
 
 def _misfit(given: Quantity, what: str, name: str, unit_text: str, span: Span | None) -> Diagnostic | None:
     """Return what is wrong with the unit of a range or a spread."""
-    own = one_of(unit_text) if unit_text else Quantity(Fraction(1), 0, 0, DIMENSIONLESS, 0, "")
-    turns = [q.cycles + q.radians for q in (own, given)]
-    if given.dimension == own.dimension and not ((own.cycles or given.cycles) and turns[0] != turns[1]):
+    nominal = one_of(unit_text) if unit_text else Quantity(Fraction(1), 0, 0, DIMENSIONLESS, 0, "")
+    turns = [q.cycles + q.radians for q in (nominal, given)]
+    if given.dimension == nominal.dimension and not (
+        (nominal.cycles or given.cycles) and turns[0] != turns[1]
+    ):
         return None
     declared = f"is in '{unit_text}'" if unit_text else "has no unit"
     return Diagnostic("SF203", f"{what} is in '{given.unit}', and '{name}' {declared}", span)
@@ -298,14 +300,14 @@ def _is_share(spread: Quantity) -> bool:
 
 def _quantity(reader: Reader, entry: KeyValue, what: str, named: Collection[str]) -> Quantity | None:
     """Return a parameter's value; of a formula in its place, what is wrong with it is noted."""
-    own = Reader()
-    quantity = own.quantity(entry.value, what)
+    plain = Reader()
+    quantity = plain.quantity(entry.value, what)
     text = entry.value.text if isinstance(entry.value, StringValue) else None
     also = _formula_hint(text, named) if text else None
     formula = Reader()
     if text and text.value.replace("*", "/").split("/")[0].strip() in {*named, "pi"}:
         formula.read(parse, text)  # a formula with a mistake in it
-    for problem in formula.problems or own.problems:
+    for problem in formula.problems or plain.problems:
         hints = (problem.hint, also if problem.code == "SF202" else None)
         reader.take((replace(problem, hint="; ".join(filter(None, hints)) or None),))
     return quantity

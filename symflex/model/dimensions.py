@@ -195,11 +195,11 @@ class DimensionSystem:
         measure = self.measure(expression)
         if measure.open or _is_constant(expression):
             return
-        left = self.variable(variable)
+        known = self.variable(variable)
         if measure.is_gain:
-            self._pairs.append(Pair(expression, (expression, measure), (expression, left)))
-        elif not self._learn(self._reduce(measure.times(left.power(-1)))):
-            given, wanted = self._reduce(measure).dimension, self._reduce(left).dimension
+            self._pairs.append(Pair(expression, (expression, measure), (expression, known)))
+        elif not self._learn(self._reduce(measure.times(known.power(-1)))):
+            given, wanted = self._reduce(measure).dimension, self._reduce(known).dimension
             message = f"'{variable}' is used in '{wanted}' but its expression is in '{given}'"
             hint = _gain_hint(expression, given, wanted) or f"a gain in '{wanted / given}' makes it fit"
             self._note("SF203", message, expression.span, hint)
@@ -218,8 +218,8 @@ class DimensionSystem:
 
     def balance(self, equation: Equation, unknowns: Sequence[str] = ()) -> None:
         """Demand that all terms of an equation are measured alike; bare ``unknowns`` are those of a field."""
-        whole = substitute(equation, {name: Derivative(name, 0) for name in unknowns})
-        terms = [t for side in whole.children for t in (side.terms if isinstance(side, Sum) else (side,))]
+        opened = substitute(equation, {name: Derivative(name, 0) for name in unknowns})
+        terms = [t for side in opened.children for t in (side.terms if isinstance(side, Sum) else (side,))]
         self._coordinate = self._axes[unknowns[0]] if unknowns else None
         before = len(self.problems)
         self._sum(Sum(tuple(terms), span=equation.span), tuple(terms), is_equation=True)
@@ -302,17 +302,17 @@ class DimensionSystem:
         unknown = self.variable(Variable("field", name))
         return unknown.times(self._axes[name].power(-order)) if order else unknown
 
-    def _at_point(self, name: str, place: Expression) -> None:
+    def _at_point(self, name: str, position: Expression) -> None:
         """Note a point that is not measured as x is."""
         # Numbers that are equal in SI units are equal, whatever they measure.
-        point = (name, place, tuple(n.quantity.dimension for n in measured(place)))
+        point = (name, position, tuple(n.quantity.dimension for n in measured(position)))
         if point in self._sound_points:
             return
-        measure = self.measure(place)
-        axis, written = self._axes[name], names(place)
+        measure = self.measure(position)
+        axis, written = self._axes[name], names(position)
         if measure.open or axis.open or any(self._varies(n) for n in written):
             return
-        if _is_constant(place) and not measured(place):
+        if _is_constant(position) and not measured(position):
             return
         if any(isinstance(n, Name) and n.name == LAPLACE for n in written):
             return  # a point that depends on s is refused for that
@@ -321,7 +321,7 @@ class DimensionSystem:
             message = f"the point is in '{given}'; the domain of '{name}' is in '{wanted}'"
             if name in self._scope.along:
                 message = f"the point is in '{given}'; x along {self._scope.along[name]} is in '{wanted}'"
-            self._note("SF203", message, place.span)
+            self._note("SF203", message, position.span)
             return
         self._sound_points.add(point)
 
@@ -454,8 +454,8 @@ class DimensionSystem:
             return measure.dimension == DIMENSIONLESS
         if measure.is_extreme:
             return True
-        (variable, exponent), *rest = measure.unknowns
-        others = tuple((v, -e / exponent) for v, e in rest)
+        (variable, exponent), *remaining = measure.unknowns
+        others = tuple((v, -e / exponent) for v, e in remaining)
         dimension = measure.dimension ** (-1 / exponent)
         self._solved[variable] = (others, dimension)
         return True

@@ -97,7 +97,7 @@ class ExpressionReader(ABC):
     def in_s(self, value: Factored) -> Factored:
         """Return the factors that depend on s, directly or through a definition or a delay."""
         places = [self.ring.index[name] for name in (LAPLACE, *self.varying) if name in self.ring.index]
-        return value.filter(lambda factor: any(degree_in(factor, place) for place in places))
+        return value.filter(lambda factor: any(degree_in(factor, index) for index in places))
 
     def series(self, expression: Expression) -> Dynamics[Factored | LinearForm]:
         """Return what an expression is, its products in series, its sums in parallel."""

@@ -195,16 +195,16 @@ def with_motion(
     loads = {x.name for x in (*draft.signals, *energy)} | inputs
     nodes = {r.node for e in draft.elements for _, references in e.nodes for r in references}
     nodes |= {a.reference.node for source in draft.inputs for a in source.attachments()}
-    rest = read_operating_point(reader, sections["operating_point"], taken, loads | nodes, cycles)
-    made = settled(reader, rest.declared, settings) if rest else ()
+    at_rest = read_operating_point(reader, sections["operating_point"], taken, loads | nodes, cycles)
+    made = settled(reader, at_rest.declared, settings) if at_rest else ()
     constants.declare(made, cycles.eager)
     parameters = {p.name: p for p in (*draft.declared, *made)}
     if energy:
-        rest = _with_multipliers(rest or NOWHERE, [x.name for x in energy])
+        at_rest = _with_multipliers(at_rest or NOWHERE, [x.name for x in energy])
     signals, found, point, solved = linearised(
         reader,
         (*draft.signals, *energy),
-        rest,
+        at_rest,
         inputs,
         loads | nodes,
         constants,
@@ -227,13 +227,13 @@ def with_motion(
     return _hung(draft, {x.name for x in energy}), point
 
 
-def _with_multipliers(rest: AtRest, unknowns: Sequence[str]) -> AtRest:
+def _with_multipliers(at_rest: AtRest, unknowns: Sequence[str]) -> AtRest:
     """Return what is known at rest, with names for multipliers of no given value."""
     multipliers = tuple(name for name in unknowns if name.startswith("lambda_"))
-    unnamed = {m: Name(f"{m}_0") for m in multipliers if m not in rest.values}
+    unnamed = {m: Name(f"{m}_0") for m in multipliers if m not in at_rest.values}
     return replace(
-        rest,
-        values={**rest.values, **unnamed},
+        at_rest,
+        values={**at_rest.values, **unnamed},
         multipliers=tuple(v.name for v in unnamed.values()),
         coordinates=tuple(name for name in unknowns if name not in multipliers),
         constraints=multipliers,

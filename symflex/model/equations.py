@@ -57,8 +57,8 @@ def read_equations(
     entries = {key: section.get(key) for key in KEYS[:2]}
     for key, entry in entries.items():
         if entry is None and all(e.key in KEYS for e in section.entries):
-            place = section.entries[0].key_span if section.entries else section.span
-            reader.note("SF214", f"{what} has no {key}", place, EXAMPLE)
+            location = section.entries[0].key_span if section.entries else section.span
+            reader.note("SF214", f"{what} has no {key}", location, EXAMPLE)
     named, written = entries["unknowns"], entries["equations"]
     if named is None or written is None:
         return ()

@@ -92,8 +92,8 @@ def _read_field(
         hint = "each unknown needs an equation"
         if len(equations) > len(unknowns):
             hint = 'list what the equations determine: unknowns = ["w", "phi"]'
-        place = equations[-1].span if equations else entry.key_span
-        reader.note("SF242", f"{what} has {one} for {other}", place, hint)
+        location = equations[-1].span if equations else entry.key_span
+        reader.note("SF242", f"{what} has {one} for {other}", location, hint)
         return None
     return FieldProblem(entry.key, unknowns, *domain, equations, conditions, entry.key_span, label, doc)
 
@@ -109,11 +109,13 @@ def _unknowns(
         texts = reader.strings(given, f"unknowns of {what}", "an array of names")
     if texts is None:
         return None
-    place = given.value.span if given else entry.key_span
+    location = given.value.span if given else entry.key_span
     if not texts:
-        reader.note("SF242", f"{what} has no unknowns", place, "leave the key out to name one as the field")
+        reader.note(
+            "SF242", f"{what} has no unknowns", location, "leave the key out to name one as the field"
+        )
         return None
-    if _few(reader, texts, f"{what} has", "unknowns", UNKNOWN_LIMIT, place) is None:
+    if _few(reader, texts, f"{what} has", "unknowns", UNKNOWN_LIMIT, location) is None:
         return None
     good = True
     for text in texts:

@@ -74,15 +74,15 @@ def _without_misplaced(
             if spec.root.get(entry.key) is not None or not _looks_misplaced(entry):
                 continue
             places = list(_spans(entry))
-            rest = [
+            remaining = [
                 p
                 for p in kept
                 if not p.span or not any(each.start <= p.span.start < each.end for each in places)
             ]
             if entry.key == "symflex":
-                rest = [p for p in rest if p.code != "SF200"]
-            if len(rest) < len(kept):
-                kept = rest
+                remaining = [p for p in remaining if p.code != "SF200"]
+            if len(remaining) < len(kept):
+                kept = remaining
                 misplaced.append(_below(section.key, entry))
     return [*kept, *misplaced], misplaced
 

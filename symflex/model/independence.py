@@ -135,21 +135,23 @@ def repetitions(forms: Sequence[Form]) -> list[Repetition]:
     repeated: list[Repetition] = []
     reduced: list[tuple[Place, Form, dict[int, int]]] = []
     for number, form in enumerate(forms):
-        rest: Form = dict(form)
+        remainder: Form = dict(form)
         origin: dict[int, int] = {number: 1}
         for pivot, row, made_of in reduced:
-            factor = rest.get(pivot, 0)
+            factor = remainder.get(pivot, 0)
             if factor:
-                rest = _total([rest, _scaled(row, -factor)])
+                remainder = _total([remainder, _scaled(row, -factor)])
                 origin = _total([origin, _scaled(made_of, -factor)])
-        pivot_here = next((k for k in rest if isinstance(k, tuple)), None)
+        pivot_here = next((k for k in remainder if isinstance(k, tuple)), None)
         if pivot_here is not None:
-            inverse = _inverse(rest[pivot_here])
-            reduced.append((pivot_here, _scaled(rest, inverse), _scaled(origin, inverse)))
+            inverse = _inverse(remainder[pivot_here])
+            reduced.append((pivot_here, _scaled(remainder, inverse), _scaled(origin, inverse)))
             continue
-        left = [k for k in rest if k is not None and not isinstance(k, tuple)]
-        if all(v.kind == "input" for v in left):
-            repeated.append(Repetition(number, tuple(sorted(i for i in origin if i != number)), bool(rest)))
+        remaining = [k for k in remainder if k is not None and not isinstance(k, tuple)]
+        if all(v.kind == "input" for v in remaining):
+            repeated.append(
+                Repetition(number, tuple(sorted(i for i in origin if i != number)), bool(remainder))
+            )
     return repeated
 
 

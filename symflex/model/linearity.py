@@ -80,9 +80,9 @@ def factored_of(
         return Factored.generator(ring, name)
 
     def raised(base: Factored, exponent: Expression) -> Factored:
-        if (whole := integer_exponent(exponent)) is None:
+        if (integer := integer_exponent(exponent)) is None:
             raise TypeError
-        return base**whole
+        return base**integer
 
     number = partial(Factored.number, ring)
     named, text = name or generator, format_expression

@@ -172,9 +172,9 @@ def _values(
             reader.note("SF247", message, entry_given.key_span, f"it goes with {others}")
         elif entry_given is not None and parameter.name in spare:
             product = spare[parameter.name]
-            place = f"{product.name} in place of {'*'.join(product.of)}"
+            choice = f"{product.name} in place of {'*'.join(product.of)}"
             hint = f"leave {parameter.name} or {product.name} out"
-            message = f"{who} has {place} and also {parameter.name}"
+            message = f"{who} has {choice} and also {parameter.name}"
             reader.note("SF247", message, entry_given.key_span, hint)
         elif entry_given is not None:
             expression = reader.expression(entry_given.value, f"{parameter.name} of {who}")
@@ -290,11 +290,11 @@ def _references(
 
 def _as_ports(table: TableValue, element: Element) -> str | None:
     """Return how nodes given under another element's port are written, None if that is not known."""
-    own = {name for p in element.ports for name in (p.name, p.pair)}
+    ports = {name for p in element.ports for name in (p.name, p.pair)}
     missing = [p for p in element.ports if table.get(p.name) is None and p.default is None]
     for entry in table.entries:
         value = entry.value
-        if entry.key not in PORTS - own or not isinstance(value, StringValue | ArrayValue):
+        if entry.key not in PORTS - ports or not isinstance(value, StringValue | ArrayValue):
             continue
         items = (value,) if isinstance(value, StringValue) else value.items
         nodes = [f'"{i.text.value[:60]}"' for i in items if isinstance(i, StringValue)]
@@ -360,15 +360,15 @@ def _read_input(reader: Reader, entry: KeyValue) -> DraftInput | None:
     if not kinds:
         unit = _unit(reader, table, what, None)
         return DraftInput(Input(entry.key, "signal", (), None, unit, label, entry.key_span), unit)
-    (place,) = kinds
-    kind, law = place.key, INPUT_KINDS[place.key]
+    (attachment,) = kinds
+    kind, law = attachment.key, INPUT_KINDS[attachment.key]
     _unit(reader, table, what, kind)
-    texts = reader.strings(place, f"{kind} of {what}", "the name of a node, or two")
+    texts = reader.strings(attachment, f"{kind} of {what}", "the name of a node, or two")
     if texts is None:
         return None
     if len(texts) not in (1, 2):
         message = f"{what} acts on one node, or on one with its reaction on a second, found {len(texts)}"
-        reader.note("SF217", message, place.value.span)
+        reader.note("SF217", message, attachment.value.span)
         return None
     references = [_reference(reader, t, law.domain, what) for t in texts]
     kept = tuple(r for r in references if r is not None)
@@ -377,10 +377,10 @@ def _read_input(reader: Reader, entry: KeyValue) -> DraftInput | None:
     if all(r.is_ground for r in kept):
         verb = "moves the ground" if law.is_imposed and law.domain not in CIRCUITS else "acts on ground only"
         hint = "the ground does not move; name a node of its own, to which the elements are attached"
-        reader.note("SF218", f"{what} {verb}", place.value.span, hint if law.is_imposed else None)
+        reader.note("SF218", f"{what} {verb}", attachment.value.span, hint if law.is_imposed else None)
         return None
     if len({(r.node, r.component) for r in kept}) != len(kept):
-        reader.note("SF218", f"{what} acts and reacts on the same node", place.value.span)
+        reader.note("SF218", f"{what} acts and reacts on the same node", attachment.value.span)
         return None
     return DraftInput(Input(entry.key, kind, kept, None, law.unit, label, entry.key_span))
 
@@ -531,12 +531,12 @@ def _unlike(attachments: Sequence[Attachment], nodes: Mapping[str, NetworkNode])
             continue
         one = pair[is_whole.index(False)]
         held_as = domain_of(one.reference, nodes[one.reference.node])
-        for other, domain, whole in zip(pair, domains, is_whole, strict=True):
-            own = domain_of(other.reference, nodes[other.reference.node])
-            if whole and domain == "plane" and held_as == "translation":
+        for other, domain, is_body in zip(pair, domains, is_whole, strict=True):
+            found = domain_of(other.reference, nodes[other.reference.node])
+            if is_body and domain == "plane" and held_as == "translation":
                 yield _without_direction(other)
-            elif own != held_as and not (whole and held_as == "rotation"):
-                what = WORDS[domain if whole else own]
+            elif found != held_as and not (is_body and held_as == "rotation"):
+                what = WORDS[domain if is_body else found]
                 message = f"{one.who} holds {what} to '{one.reference.node}', which is {WORDS[held_as]}"
                 hint = "couple them, with a transformer for instance"
                 yield Diagnostic("SF220", message, other.reference.span, hint)
@@ -621,8 +621,8 @@ def _alike(kind: str, domain: PortDomain) -> str | None:
         if len(e.ports) == 1 and type(e).__base__ is not Element
     }
     kinds |= {name: (law.order, law.domain) for name, law in INPUT_KINDS.items()}
-    own = kinds.get(kind, ())
-    return next((name for name, each in kinds.items() if own and each == (*own[:-1], domain)), None)
+    domains = kinds.get(kind, ())
+    return next((name for name, each in kinds.items() if domains and each == (*domains[:-1], domain)), None)
 
 
 class AsWritten:

@@ -142,7 +142,7 @@ def _unused(key: str, taken: Collection[str]) -> str:
 def linearised(
     reader: Reader,
     signals: tuple[Signal, ...],
-    rest: AtRest | None,
+    at_rest: AtRest | None,
     inputs: Collection[str],
     moving: Collection[str],
     constants: Constants,
@@ -152,15 +152,15 @@ def linearised(
     # products with s.
     equations = {x.name: x.expression for x in signals if isinstance(x.expression, Equation)}
     primes = (isinstance(n, Derivative | Differentiated) for e in equations.values() for n in nodes(e))
-    if not equations or (rest is None and not any(primes)):
+    if not equations or (at_rest is None and not any(primes)):
         return signals, [], None, {}
     written = (x.expression for x in signals)
-    note_divisions(reader, constants, (*written, *(rest.values.values() if rest else ())))
-    point = _AboutRest(reader, rest or NOWHERE, frozenset(inputs), constants)
+    note_divisions(reader, constants, (*written, *(at_rest.values.values() if at_rest else ())))
+    point = _AboutRest(reader, at_rest or NOWHERE, frozenset(inputs), constants)
     point.check_all_named(moving, equations.values())
     if reader.problems:
         raise SpecError(*reader.problems)
-    if rest is None:
+    if at_rest is None:
         plain = {n: [without_brackets(x, point.varies) for x in e.children] for n, e in equations.items()}
         rewritten = {n: Equation(*map(in_s, plain[n]), span=e.span) for n, e in equations.items()}
         kept = tuple(replace(x, expression=rewritten.get(x.name, x.expression)) for x in signals)
@@ -168,7 +168,7 @@ def linearised(
     point.follow(signals, equations, moving)
     made = {name: point.linear(equation) for name, equation in equations.items()}
     if None not in made.values():
-        point.check_names(rest)
+        point.check_names(at_rest)
         point.check_constraints(equations, is_solved=False)
         if not reader.problems:
             point.check_at_rest()
@@ -182,15 +182,15 @@ def linearised(
 
 def note_divisions(reader: Reader, constants: Constants, expressions: Iterable[Expression]) -> None:
     """Note every part of what is written that divides by zero, whatever the names in it are."""
-    for whole in expressions:
-        for node in nodes(whole):
+    for expression in expressions:
+        for node in nodes(expression):
             below = divisor(node)
             if below is None or any(isinstance(n, Differentiated) or _is_of_field(n) for n in nodes(below)):
                 continue
             rates = [n for n in nodes(below) if isinstance(n, Derivative)]
             plain = replace_values(below, {n: Name(format_expression(n)) for n in rates})
             if constants.vanishes(plain):
-                reader.note("SF224", "division by zero", below.span or node.span or whole.span)
+                reader.note("SF224", "division by zero", below.span or node.span or expression.span)
 
 
 def in_s(expression: Expression, names: Collection[str] | None = None) -> Expression:
@@ -205,11 +205,11 @@ class _AboutRest:
     def __init__(
         self,
         reader: Reader,
-        rest: AtRest,
+        at_rest: AtRest,
         inputs: frozenset[str],
         constants: Constants,
     ) -> None:
-        self.reader, self.rest, self.inputs, self.constants = reader, rest, inputs, constants
+        self.reader, self.rest, self.inputs, self.constants = reader, at_rest, inputs, constants
         self.by_value: dict[str, Fraction] = {}
         self.found: tuple[FoundValue, ...] = ()
         self.used: set[str] = set()  # names whose values were used
@@ -217,16 +217,16 @@ class _AboutRest:
         self.whole: list[Equation] = []  # at rest, as they are written
         self.bare: set[Expression] = set()  # names that occur without a derivative
         self.slopes: list[dict[str, Expression]] = []  # of each equation, by what varies
-        self.values = dict(rest.values)
-        self.definitions = list(rest.definitions)
-        constants.expressions |= {d.name: d.expression for d in rest.definitions} | dict.fromkeys(
-            (*rest.solve, *rest.multipliers)
+        self.values = dict(at_rest.values)
+        self.definitions = list(at_rest.definitions)
+        constants.expressions |= {d.name: d.expression for d in at_rest.definitions} | dict.fromkeys(
+            (*at_rest.solve, *at_rest.multipliers)
         )
         self.left_over: list[Left] = []
         self.calls: Mapping[Expression, Expression] = {}  # what functions that were inverted are at rest
         self.seen: set[str] = set()
         self.signals: dict[str, Expression] = {}  # explicit ones, and rates, which follow from the others
-        rates = {n: v for n, v in rest.values.items() if n.endswith("'") and not is_number(v, 0)}
+        rates = {n: v for n, v in at_rest.values.items() if n.endswith("'") and not is_number(v, 0)}
         self.rates = {Name(n[:-1]): v for n, v in rates.items() if not n.endswith("''")}
         self.drifting: set[Expression] = set()  # names in what does not stay as it is at these rates
 
@@ -293,13 +293,15 @@ class _AboutRest:
     def linear(self, equation: Equation) -> Equation | None:
         """Return a linear equation of the deviations, ``None`` where there is none, which is noted."""
         try:
-            whole = sum_of([self._with_primes(equation.left), negative(self._with_primes(equation.right))])
-            leaves = self._met(whole)
-            slopes = [(n, shorter(self.at_rest(derivative(whole, n)))) for n in leaves]
+            difference = sum_of(
+                [self._with_primes(equation.left), negative(self._with_primes(equation.right))]
+            )
+            leaves = self._met(difference)
+            slopes = [(n, shorter(self.at_rest(derivative(difference, n)))) for n in leaves]
             values = {n: self._value_at_rest(format_expression(n)) for n in leaves}
-            self.whole.append(Equation(replace_values(whole, values), number(0), span=equation.span))
-            rest = simplified(self.at_rest(whole), {LAPLACE: number(0)})
-            self.left_over.append(Left(shorter(rest), equation))
+            self.whole.append(Equation(replace_values(difference, values), number(0), span=equation.span))
+            residual = simplified(self.at_rest(difference), {LAPLACE: number(0)})
+            self.left_over.append(Left(shorter(residual), equation))
         except ValueError as error:
             part = error.args[0]
             message = f"'{format_expression(part)}' has no derivative here"
@@ -401,15 +403,15 @@ class _AboutRest:
     def at_rest(self, expression: Expression) -> Expression:
         """Return an expression with the values at rest in place of all that varies."""
         leaves = {n: self._value_at_rest(format_expression(n)) for n in nodes(expression) if self.varies(n)}
-        rest = simplified(
+        value = simplified(
             replace_values(expression, leaves), {format_expression(n): v for n, v in leaves.items()}
         )
-        while parts := [n for n in nodes(rest) if isinstance(n, Call) and n.name in SIGNS]:
+        while parts := [n for n in nodes(value) if isinstance(n, Call) and n.name in SIGNS]:
             part = parts[-1]  # no other is inside of it
             sign = self._sign(part)
             size = part.argument if sign > 0 else negative(part.argument)
-            rest = replace_node(rest, part, size if part.name == "abs" else number(sign))
-        return simplified(rest, {})
+            value = replace_node(value, part, size if part.name == "abs" else number(sign))
+        return simplified(value, {})
 
     def _sign(self, part: Call) -> int:
         """Return the sign of what abs or sgn is of, by the values of parameters if it depends on them."""
@@ -444,16 +446,16 @@ class _AboutRest:
         )
         linear = tuple(e for e in made.values() if e is not None)
         values = tuple((n, v) for n, v in self.values.items() if n.rstrip("'") in self.seen)
-        own = coordinates, matrices if coordinates else (), frozenset(self.used), self.found
-        return OperatingPoint(values, tuple(equations.values()), linear, *own)
+        facts = coordinates, matrices if coordinates else (), frozenset(self.used), self.found
+        return OperatingPoint(values, tuple(equations.values()), linear, *facts)
 
-    def check_names(self, rest: AtRest) -> None:
+    def check_names(self, given: AtRest) -> None:
         """Note values of what occurs in no equation."""
-        for name, value in rest.values.items():
+        for name, value in given.values.items():
             if name not in self.seen and name.rstrip("'") not in self.seen:
                 hint = nearest(name, self.seen) or EXAMPLE
                 message = f"'{name}' of [operating_point] occurs in no equation"
-                self.reader.note("SF210", message, value.span or rest.span, hint)
+                self.reader.note("SF210", message, value.span or given.span, hint)
             base, order = name.rstrip("'"), name.count("'")
             lower_rates = {base + "'" * k for k in range(1, order)}
             depends = Name(base) in (self.drifting if order == 1 else self.bare)
@@ -462,12 +464,12 @@ class _AboutRest:
                 hint = (
                     "what turns steadily may occur by its rates, and in differences of angles that turn alike"
                 )
-                self.reader.note("SF407", message, value.span or rest.span, hint)
+                self.reader.note("SF407", message, value.span or given.span, hint)
 
     def check_at_rest(self) -> None:
         """Solve what is asked for, and note every equation that does not hold at rest."""
         solving = Solving(self.reader, self.constants)
-        left, missing = solving.solve(self.left_over, [*self.rest.multipliers, *self.rest.solve])
+        unsolved, missing = solving.solve(self.left_over, [*self.rest.multipliers, *self.rest.solve])
         self.definitions += solving.definitions
         self.by_value = solving.by_value
         self.used |= solving.used
@@ -480,7 +482,7 @@ class _AboutRest:
                 message = f"'{format_expression(made.expression)}' has no value at the operating point"
                 self.reader.note("SF224", message, made.span, "correct the values of parameters")
         numbers = {p.name: self.constants.known[p.name] for p in self.rest.declared}
-        for each in left:
+        for each in unsolved:
             if self.constants.vanishes(each.residual):
                 continue
             if self.constants.vanishes(each.residual, numbers):
@@ -519,14 +521,14 @@ class _AboutRest:
             hint = "choose another point; leave out a constraint that follows from the others everywhere"
             self.reader.note("SF407", message, equations[self.rest.constraints[0]].span, hint)
 
-    def _note_left(self, left: Left) -> None:
-        size, value = "", self.constants.here(left.residual)
+    def _note_left(self, unsolved: Left) -> None:
+        size, value = "", self.constants.here(unsolved.residual)
         if value is not None and value.is_finite():
             size = f" ({'0 for these values alone' if value.contains(0) else value.str(3, radius=False)})"
-        shown = format_expression(left.residual)
+        shown = format_expression(unsolved.residual)
         message = f"this does not hold at the operating point: {shown} is left{size}"
         hint = "correct [operating_point], or name what follows from it: solve = [...]"
-        self.reader.note("SF407", message, left.equation.span, hint)
+        self.reader.note("SF407", message, unsolved.equation.span, hint)
 
 
 def _order_of_s(factor: Expression) -> int:

@@ -100,9 +100,9 @@ def load_model(
 ) -> Model:
     """Parse and resolve a text, reporting syntax and meaning errors together in the order of the text."""
     spec, syntax = parse_with_recovery(source)
-    own = ancestors or (Path(source.name).resolve(),)
+    chain = ancestors or (Path(source.name).resolve(),)
     try:
-        model = resolve(spec, Origin(source, own, loads or Loads.of(source, allow_outside), load_model))
+        model = resolve(spec, Origin(source, chain, loads or Loads.of(source, allow_outside), load_model))
     except SpecError as error:
         # A name lost with an unreadable line would be reported as unknown: that is not a second mistake.
         later = [d for d in error.diagnostics if not syntax or d.code not in (*CONSEQUENCES, "SF214")]
@@ -223,15 +223,15 @@ def _with_names_in_print(
 ) -> Model:
     """Return a model whose names for print are read, and note what is wrong in printed formulas."""
     readable = readable_names(model, broken)
-    own = cycles.printed(in_own_names(model.analysis))
+    analysis = cycles.printed(in_own_names(model.analysis))
     meant = {*readable.constants, *readable.definitions, *readable.varying}
-    for name, expression in own.where:
+    for name, expression in analysis.where:
         if name in meant:
             message = f"'{name}' in print of [analysis] has a meaning already"
             reader.note("SF213", message, expression.span, "give the combination of parameters another name")
-    for published in (*model.published, *([] if {n for n, _ in own.where} & meant else [own])):
+    for published in (*model.published, *([] if {n for n, _ in analysis.where} & meant else [analysis])):
         later.take(check_printed(published, readable))
-    return replace(model, analysis=replace(model.analysis, print=own.where))
+    return replace(model, analysis=replace(model.analysis, print=analysis.where))
 
 
 def _conversions(
@@ -308,12 +308,12 @@ def _inherited_parameters(
     reader: Reader, declared: Sequence[DeclaredParameter], blocks: Sequence[PlacedBlock]
 ) -> tuple[ModelParameter, ...]:
     """Return the parameters that ``model`` blocks bring along; an equal name must be equal in value."""
-    own = {p.name: p.resolve() for p in declared}
+    resolved = {p.name: p.resolve() for p in declared}
     inherited: dict[str, ModelParameter] = {}
     bringing: dict[str, str] = {}
     for block in blocks:
         for parameter in block.submodel.parameters if block.submodel else ():
-            earlier = own.get(parameter.name) or inherited.get(parameter.name)
+            earlier = resolved.get(parameter.name) or inherited.get(parameter.name)
             if earlier is None:
                 inherited[parameter.name] = parameter
                 bringing[parameter.name] = block.name
@@ -325,7 +325,7 @@ def _inherited_parameters(
                 here = f"in block '{block.name}' ({parameter.span})"
                 message = f"parameter '{parameter.name}' has another value {here}{than}"
                 hint = "rename one of the two: parameters of a model block are shared by name"
-                reader.note("SF226", message, earlier.span if earlier.name in own else block.span, hint)
+                reader.note("SF226", message, earlier.span if earlier.name in resolved else block.span, hint)
     return tuple(inherited.values())
 
 
@@ -461,18 +461,18 @@ def _place(draft: DraftElement, nodes: Mapping[str, NetworkNode]) -> PlacedEleme
     domains: list[tuple[str, Placing]] = []
     for port, references in draft.nodes:
         live = [r for r in references if not r.is_ground]
-        whole = [r for r in live if nodes[r.node].domain in COMPONENTS and not r.component]
+        bodies = [r for r in live if nodes[r.node].domain in COMPONENTS and not r.component]
         domain: Placing
         match port.domain:
             case "translation" | "rotation" | "electrical" | "acoustic" | "thermal":
                 domain = port.domain
             case _ if not live:
                 domain = "translation"
-            case "whole" | "planar" | "plane" if len(whole) == len(live):
-                both = {nodes[r.node].domain for r in whole}
+            case "whole" | "planar" | "plane" if len(bodies) == len(live):
+                both = {nodes[r.node].domain for r in bodies}
                 domain = "plane" if both == {"plane"} else "planar"
             case _:  # where one end is a single coordinate, it is that of the other which is held
-                single = next((r for r in live if r not in whole), live[0])
+                single = next((r for r in live if r not in bodies), live[0])
                 domain = domain_of(single, nodes[single.node])
         domains.append((port.name, domain))
     attached = tuple((port.name, references) for port, references in draft.nodes)
@@ -503,11 +503,11 @@ def _surroundings(draft: Draft, scope: ModelScope, parameters: Sequence[ModelPar
 
 def _holds(expression: Expression, problems: Sequence[Diagnostic]) -> bool:
     """Tell whether some problem lies within an expression."""
-    own = expression.span
+    span = expression.span
     spans = [
-        p.span for p in problems if own is not None and p.span is not None and p.span.source is own.source
+        p.span for p in problems if span is not None and p.span is not None and p.span.source is span.source
     ]
-    return own is not None and any(own.start <= each.start and each.end <= own.end for each in spans)
+    return span is not None and any(span.start <= each.start and each.end <= span.end for each in spans)
 
 
 def _check(expression: Expression, scope: ModelScope, *, constant: bool) -> list[Diagnostic]:

@@ -98,8 +98,8 @@ def _table(entry: Schema, description: str, names: Schema = NAMES) -> Schema:
 
 def _labelled(properties: Mapping[str, Schema]) -> Schema:
     label = {"type": "string", "minLength": 1, "maxLength": LABEL_LIMIT}
-    own = {"latex": _said(label, "how it is set in LaTeX"), "doc": _said(TEXT, "what it is")}
-    return {**properties, **own}
+    labels = {"latex": _said(label, "how it is set in LaTeX"), "doc": _said(TEXT, "what it is")}
+    return {**properties, **labels}
 
 
 def _parameter() -> Schema:

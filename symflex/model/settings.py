@@ -92,22 +92,22 @@ def _settled(reader: Reader, parameter: DeclaredParameter, given: Setting) -> De
     quantity = reader.read(read, text)
     if quantity is None:
         return parameter
-    own = one_of(parameter.unit_text) if parameter.unit_text else parameter.quantity
-    if own is not None and (parameter.has_unit or parameter.unit_text):
-        declared = f"'{name}' is declared in '{own.unit}'"
-        if quantity.unit and quantity.dimension != own.dimension:
+    nominal = one_of(parameter.unit_text) if parameter.unit_text else parameter.quantity
+    if nominal is not None and (parameter.has_unit or parameter.unit_text):
+        declared = f"'{name}' is declared in '{nominal.unit}'"
+        if quantity.unit and quantity.dimension != nominal.dimension:
             reader.note("SF203", f"{declared}, the value given is in '{quantity.unit}'", text.span)
             return parameter
-        turns = [q.cycles + q.radians for q in (own, quantity)]
+        turns = [q.cycles + q.radians for q in (nominal, quantity)]
         is_zero = not quantity.unit and not quantity.magnitude
-        if (own.cycles or quantity.cycles) and turns[0] != turns[1] and not is_zero:
+        if (nominal.cycles or quantity.cycles) and turns[0] != turns[1] and not is_zero:
             # Whether 60 is 60 Hz or 60 rad/s, and 1 mm one per turn or per radian, nobody can tell.
             what = f"is in '{quantity.unit}'" if quantity.unit else "has no unit"
-            hint = f"give it in a unit that counts turns, such as '{own.unit or quantity.unit}'"
+            hint = f"give it in a unit that counts turns, such as '{nominal.unit or quantity.unit}'"
             reader.note("SF203", f"{declared}, the value given {what}", text.span, hint)
             return parameter
         if not quantity.unit:
-            quantity = replace(own, magnitude=quantity.magnitude, pi_power=quantity.pi_power)
+            quantity = replace(nominal, magnitude=quantity.magnitude, pi_power=quantity.pi_power)
     if problem := without_sign(name, quantity, parameter.assume, text.span):
         reader.take((problem,))
         return parameter
@@ -149,15 +149,15 @@ def spread_box(
         if p.value is None or spread is None or p.value.is_imaginary:
             continue
         value = p.value.nearly
-        own = spread
-        if isinstance(own, Fraction):
-            own = replace(p.value, rational=abs(p.value.rational) * own)
-        half = own.nearly
+        width = spread
+        if isinstance(width, Fraction):
+            width = replace(p.value, rational=abs(p.value.rational) * width)
+        half = width.nearly
         if p.assume != "real" and (value < half or (value == half and p.assume == "positive")):
             message = f"the spread of '{p.name}' reaches values that it is assumed not to have"
             raise UsageError(Diagnostic("SF804", message, p.span))
         # PI_NEARLY has 30 digits.
-        around = (abs(value) + half) / 10**28 if p.value.pi_power or own.pi_power else 0
+        around = (abs(value) + half) / 10**28 if p.value.pi_power or width.pi_power else 0
         if half:
             check_free(p)
             box[p.name] = (value - half - around, value + half + around)

@@ -119,9 +119,9 @@ class Line:
         """Tell whether a value is zero whatever the parameters are."""
         return self._read(value) == {}
 
-    def value(self, place: Expression) -> Fraction | None:
+    def value(self, position: Expression) -> Fraction | None:
         """Return the number a place is with the parameters' values."""
-        polynomial = self._read(place)
+        polynomial = self._read(position)
         return None if polynomial is None else self._value(polynomial)
 
     def is_polynomial_in(self, expression: Expression, name: str) -> bool:
@@ -147,7 +147,7 @@ class Line:
         number = value_along(expression, arb("nan"), self)
         return float(number.mid()) if number is not None and number.is_finite() else None
 
-    def key(self, place: Expression) -> Hashable:
+    def key(self, position: Expression) -> Hashable:
         """Return what is equal of equal places: the number, else the polynomial, else the place as written.
 
         >>> from symflex.expressions import Number, Product, Quotient
@@ -156,9 +156,9 @@ class Line:
         >>> line.key(half) == line.key(Product((Number(Fraction(1, 2)), Name("l"))))
         True
         """
-        polynomial = self._read(place)
+        polynomial = self._read(position)
         if polynomial is None:
-            return place
+            return position
         value = self._value(polynomial)
         return frozenset(polynomial.items()) if value is None else value
 
@@ -278,18 +278,18 @@ class RangedValue:
 
     def _complaint_inside(self, line: Line, length: Expression) -> str:
         """Return what is wrong at the first of some points between the ends."""
-        whole = line.value(length)
-        if whole is None:
+        extent = line.value(length)
+        if extent is None:
             return ""
         for k in range(1, PIECES):
-            place = whole * k / PIECES
-            value = value_along(self.expression, ball(place), line)
+            position = extent * k / PIECES
+            value = value_along(self.expression, ball(position), line)
             if value is None or not value.is_finite():
                 return ""
             if value < 0 or (self.sign == "positive" and value == 0):
                 # Near a simple zero balls of exact numbers are as exact as these.
                 shown = f"negative ({float(value.mid()):.6g})" if value < 0 else "0"
-                return f"{self.what} at x = {float(place):.6g} m is {shown}; {self.reason}"
+                return f"{self.what} at x = {float(position):.6g} m is {shown}; {self.reason}"
         return ""
 
 
@@ -310,10 +310,10 @@ def ranged_values(draft: Draft | Model) -> Iterator[RangedValue]:
                 is_length = port.name == element.length
                 # What varies along x is told at the ends, where it mostly is least.
                 ends = {"0": Number(Fraction(0)), element.length: length}
-                for place, end in ends.items() if is_along else ():
+                for position, end in ends.items() if is_along else ():
                     if end is not None:
                         at = substitute(given[port.name], {COORDINATE: lower(end)})
-                        yield RangedValue(f"{what} at x = {place}", at, sign, reason, is_end=True)
+                        yield RangedValue(f"{what} at x = {position}", at, sign, reason, is_end=True)
                 yield RangedValue(what, given[port.name], sign, reason, is_length, length=length)
     for placed in draft.blocks:
         block = placed.block
@@ -412,7 +412,7 @@ def _sign_along(value: Expression, length: Expression, line: Line) -> int | None
         case Name(name) if name in line.definitions:
             return _sign_along(line.definitions[name], length, line)
     places = Number(Fraction(0)), lower(length)
-    first, last = (line.value(substitute(value, {COORDINATE: place})) == 0 for place in places)
+    first, last = (line.value(substitute(value, {COORDINATE: position})) == 0 for position in places)
     return sign_between(
         (arb(0), ball(line.value(length) or Fraction(0))),
         lambda x: value_along(value, x, line),

@@ -93,17 +93,17 @@ class _Coupled:
         """Put a formula in place of a name."""
         self.rows = [simplified(r, {name: formula}) if Name(name) in nodes(r) else r for r in self.rows]
 
-    def drop(self, name: str, formula: Expression, own: int) -> bool:
+    def drop(self, name: str, formula: Expression, row: int) -> bool:
         """Take a name out with its own equation, if paths to solutions are the same without; tell whether."""
         holding = [i for i, r in enumerate(self.rows) if Name(name) in nodes(r)]
         slopes = [derivative(self.rows[i], Name(name)) for i in holding]
         is_linear = all(Name(n) not in nodes(slope) for slope in slopes for n in self.names)
-        if not is_linear and holding != [own]:
+        if not is_linear and holding != [row]:
             return False
         if not is_linear:
             self.alone.append(name)
         self.names.remove(name)
-        del self.rows[own]
+        del self.rows[row]
         self.put(name, formula)
         return True
 
@@ -121,12 +121,12 @@ class Solving:
     calls: dict[Expression, Expression] = field(default_factory=dict)  # what inverted functions are at rest
     _boxes: dict[str, arb] = field(default_factory=dict)  # of what was solved by value
 
-    def solve(self, left: Sequence[Left], names: Sequence[str]) -> tuple[list[Left], list[str]]:
+    def solve(self, residuals: Sequence[Left], names: Sequence[str]) -> tuple[list[Left], list[str]]:
         """Solve for names; return what is left of other equations, and the names that nothing determines."""
         wanted, formulas = list(names), list[tuple[str, Left]]()
         start = {p: self.constants.known.pop(p) for p in names if p in self.constants.known}
         may_vanish = start.keys() & self.constants.signed
-        rows = [_without_factor(each, wanted, may_vanish) for each in left]
+        rows = [_without_factor(each, wanted, may_vanish) for each in residuals]
         while not self.reader.problems:
             found = [
                 (p, solution, each)
@@ -192,9 +192,9 @@ class Solving:
             return None
         with precision(BITS):
             scale, unit = unit_of_value(self.constants.declared.get(name))
-            whole, declared = value / scale, None if start is None else start / scale
-            middle = Fraction(0 if whole.contains(0) else whole.mid().str(DIGITS, radius=False))
-            radius = abs(whole - ball(middle)).upper()
+            scaled, declared = value / scale, None if start is None else start / scale
+            middle = Fraction(0 if scaled.contains(0) else scaled.mid().str(DIGITS, radius=False))
+            radius = abs(scaled - ball(middle)).upper()
             return FoundValue(
                 name,
                 middle,
@@ -250,11 +250,11 @@ class Solving:
         for p, _ in formulas:
             if p not in start:
                 coupled.put(p, meaning[p])
-        left = [p for p, _ in owned]
+        remaining = [p for p, _ in owned]
         while dropped := next(
-            (p for i, p in enumerate(left) if coupled.drop(p, meaning[p], len(rows) + i)), None
+            (p for i, p in enumerate(remaining) if coupled.drop(p, meaning[p], len(rows) + i)), None
         ):
-            left.remove(dropped)
+            remaining.remove(dropped)
         return coupled
 
     def _check(self, unknown: str, row: Left, start: arb | None) -> None:
@@ -412,9 +412,9 @@ def _first_block(
 ) -> tuple[list[Left], list[str]]:
     """Return the equations that declared names alone solve, and these names, if other rows have more."""
     held = [[p for p in wanted if Name(p) in nodes(r.residual)] for r in rows]
-    first = [r for r, own in zip(rows, held, strict=True) if own and {*own} <= {*start}]
+    first = [r for r, columns in zip(rows, held, strict=True) if columns and {*columns} <= {*start}]
     known = [p for p in wanted if any(Name(p) in nodes(r.residual) for r in first)]
-    is_square = len(first) == len(known) and any(not {*own} <= {*start} for own in held)
+    is_square = len(first) == len(known) and any(not {*columns} <= {*start} for columns in held)
     return (first, known) if is_square else ([], [])
 
 
@@ -459,24 +459,24 @@ def _one_call(residual: Expression, unknown: str, wanted: Collection[str]) -> tu
     calls = [n for n in nodes(residual) if isinstance(n, Call) and Name(unknown) in nodes(n.argument)]
     if not calls or calls[0].name not in INVERSES:
         return None
-    whole = Name(f"({unknown})")  # which nothing is called
-    value = _solved(replace_node(residual, calls[0], whole), whole.name, [*wanted, whole.name])
+    argument = Name(f"({unknown})")  # which nothing is called
+    value = _solved(replace_node(residual, calls[0], argument), argument.name, [*wanted, argument.name])
     if value is None or Name(unknown) in nodes(value) or isinstance(value, Call):
         return None
     return calls[0], value
 
 
-def _without_factor(left: Left, wanted: Collection[str], may_vanish: Collection[str]) -> Left:
+def _without_factor(equation: Left, wanted: Collection[str], may_vanish: Collection[str]) -> Left:
     """Return what else vanishes, of a product with a wanted name and another: ``X_0*(mu_0 - D)``."""
-    residual = left.residual
+    residual = equation.residual
     for p in wanted:
         if p in may_vanish:
             continue  # a declared value decides which of both vanishes
         slope = simplified(derivative(residual, Name(p)), {})
         other = {Name(n) for n in wanted} & {*nodes(slope)}
         if other and Name(p) not in other and is_number(simplified(residual, {p: number(0)}), 0):
-            return Left(slope, left.equation, slope)
-    return replace(left, unsolved=residual)
+            return Left(slope, equation.equation, slope)
+    return replace(equation, unsolved=residual)
 
 
 def _over_one_line(residual: Expression, unknown: str) -> Expression:

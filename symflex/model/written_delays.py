@@ -59,8 +59,8 @@ def with_written_delays(draft: Draft, taken: Collection[str]) -> Draft:
     exponentials = [n for e in places for n in nodes(e) if isinstance(n, Call) and n.name == "exp"]
     opened = opened_definitions(draft) if exponentials else None
     moving = {name: e for name, e in (opened or {}).items() if names_among(e, (LAPLACE,))}
-    late_nodes = {n: own for n in exponentials if (own := _written_delay(n, moving))}
-    late_nodes = {n: own for n, own in late_nodes.items() if not names_among(own[0], along)}
+    late_nodes = {n: written for n in exponentials if (written := _written_delay(n, moving))}
+    late_nodes = {n: written for n, written in late_nodes.items() if not names_among(written[0], along)}
     if not late_nodes:
         return draft
     used = {n.name for e in places for n in names(e)}
@@ -107,9 +107,9 @@ def _written_delay(node: Call, moving: Mapping[str, Expression]) -> tuple[Expres
     powers = powers_of(negative(argument), LAPLACE)
     if powers is None or max(powers) != 1 or is_number(powers[1], 0):
         return None
-    rest = negative(powers.get(0, number(0)))
-    if is_number(rest, 0):
+    delay = negative(powers.get(0, number(0)))
+    if is_number(delay, 0):
         return powers[1], number(1)
-    if ONE in nodes(argument) and not any(isinstance(n, Number) for n in nodes(rest)):
-        rest = Product((ONE, rest))  # in (s - 1)*T the 1 is one per second
-    return powers[1], Call("exp", rest)
+    if ONE in nodes(argument) and not any(isinstance(n, Number) for n in nodes(delay)):
+        delay = Product((ONE, delay))  # in (s - 1)*T the 1 is one per second
+    return powers[1], Call("exp", delay)

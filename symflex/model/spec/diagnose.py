@@ -52,9 +52,9 @@ def diagnose_toml(source: Source, scan: Scan, statement: Statement, message: str
     text = scan.text
     if message.startswith(_TWICE):
         return _twice(source, scan, statement, message)
-    place = Span(source, offset, min(offset + 1, len(text)))
+    location = Span(source, offset, min(offset + 1, len(text)))
     if control := _CONTROL.match(text, offset):
-        return Diagnostic("SF101", f"control character U+{ord(control[0]):04X}", place, "remove it")
+        return Diagnostic("SF101", f"control character U+{ord(control[0]):04X}", location, "remove it")
     if statement.header:
         return _bad_header(source, text, statement)
     if statement.equals is None or offset <= statement.equals:
@@ -150,27 +150,29 @@ def _bad_key(source: Source, text: str, statement: Statement) -> Diagnostic:
 
 
 def _bad_value(source: Source, text: str, statement: Statement, message: str, offset: int) -> Diagnostic:
-    whole = _value_span(source, text, statement)
-    value = text[whole.start : whole.end]
-    equals = whole.start if statement.equals is None else statement.equals
+    value_span = _value_span(source, text, statement)
+    value = text[value_span.start : value_span.end]
+    equals = value_span.start if statement.equals is None else statement.equals
     if not value:
         hint = 'write a number, or text in quotes: "..."'
         return Diagnostic("SF101", "no value after '='", Span(source, equals, equals + 1), hint)
-    place = Span(source, offset, min(offset + 1, len(text)))
+    location = Span(source, offset, min(offset + 1, len(text)))
     if value.startswith("="):
-        return Diagnostic("SF101", "found '=='", Span(source, equals, whole.start + 1), "write a single '='")
+        return Diagnostic(
+            "SF101", "found '=='", Span(source, equals, value_span.start + 1), "write a single '='"
+        )
     if escape := _escape(text, statement, message, offset):
         hint = "write the text between single quotes '...', where a backslash is itself, or double it: \\\\"
         shown = text[escape[0] : escape[1]]
         return Diagnostic("SF101", f"{_shown(shown)} is not an escape sequence", Span(source, *escape), hint)
     if value[0] in "\"'":
-        message = f"unexpected text after the value: {_shown(text[offset : whole.end])}"
-        place = Span(source, offset, max(offset + 1, whole.end))
-        return Diagnostic("SF101", message, place, "one key a line")
+        message = f"unexpected text after the value: {_shown(text[offset : value_span.end])}"
+        location = Span(source, offset, max(offset + 1, value_span.end))
+        return Diagnostic("SF101", message, location, "one key a line")
     if value[0] not in "[{":
         said, hint = _bad_scalar(value)
-        return Diagnostic("SF101", said, whole, hint)
-    return _bad_collection(source, text, whole, message, place)
+        return Diagnostic("SF101", said, value_span, hint)
+    return _bad_collection(source, text, value_span, message, location)
 
 
 def _escape(text: str, statement: Statement, message: str, offset: int) -> tuple[int, int] | None:
@@ -222,25 +224,27 @@ _SCALAR_HINTS: tuple[tuple[Callable[[str], bool], Callable[[str], str]], ...] = 
 )
 
 
-def _bad_collection(source: Source, text: str, whole: Span, message: str, place: Span) -> Diagnostic:
-    if text[whole.start] == "{":
-        if place.text in {"\n", "\r", ""} and place.start < whole.end:
+def _bad_collection(source: Source, text: str, collection: Span, message: str, location: Span) -> Diagnostic:
+    if text[collection.start] == "{":
+        if location.text in {"\n", "\r", ""} and location.start < collection.end:
             hint = "write it on one line, or as a table with its own [header]"
-            return Diagnostic("SF101", "an inline table must end on the line where it begins", whole, hint)
-        if place.text == "}":
+            return Diagnostic(
+                "SF101", "an inline table must end on the line where it begins", collection, hint
+            )
+        if location.text == "}":
             message = "an inline table has no comma before its '}'"
-            return Diagnostic("SF101", message, place, "remove the comma")
-    if place.start >= whole.end or not place.text.strip():
-        return Diagnostic("SF101", message[:1].lower() + message[1:], whole)
-    word = re.compile(r"[^\s,\[\]{}=#]*+").match(text, place.start)
-    written = word[0] if word and word[0] else place.text
-    span = Span(source, place.start, place.start + len(written))
+            return Diagnostic("SF101", message, location, "remove the comma")
+    if location.start >= collection.end or not location.text.strip():
+        return Diagnostic("SF101", message[:1].lower() + message[1:], collection)
+    word = re.compile(r"[^\s,\[\]{}=#]*+").match(text, location.start)
+    written = word[0] if word and word[0] else location.text
+    span = Span(source, location.start, location.start + len(written))
     if message.startswith("Invalid value"):
         said, hint = _bad_scalar(written)
         return Diagnostic("SF101", said, span, hint)
     if message.startswith("Unclosed"):
         closing = "]" if message.endswith("array") else "}"
-        number = re.search(r"=\s*([-+.\d]+)\s*$", text[: place.start])
+        number = re.search(r"=\s*([-+.\d]+)\s*$", text[: location.start])
         cure = f'put a quantity in quotes: "{number[1]} {_cut(written)}"' if number else None
         return Diagnostic("SF101", f"expected ',' or '{closing}', found {_shown(written)}", span, cure)
     return Diagnostic("SF101", f"unexpected {_shown(written)}: {message[:1].lower()}{message[1:]}", span)

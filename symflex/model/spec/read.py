@@ -102,10 +102,12 @@ def _meant(name: str) -> str | None:
         return "a file's name is needed: standard input is not read"
     if example := example_of(name):
         return f"'symflex examples copy {example}' writes a model of this name"
-    folder, own = os.path.split(name)
-    stem, suffix = os.path.splitext(own)
+    folder, file_name = os.path.split(name)
+    stem, suffix = os.path.splitext(file_name)
     try:
-        beside = sorted(f for f in os.listdir(folder or ".") if f.endswith(suffix) and f != own)[:MOST_FILES]
+        beside = sorted(f for f in os.listdir(folder or ".") if f.endswith(suffix) and f != file_name)[
+            :MOST_FILES
+        ]
     except OSError:
         return None
     if meant := nearest(stem, [f.removesuffix(suffix) for f in beside]):

@@ -133,8 +133,8 @@ class Deck:
         self.lines += number
         if self.lines > MOST_LINES:
             hint = "leave out what is not needed, or split the circuit"
-            whole = " with all that it includes and repeats" if card else ""
-            message = f"a netlist has at most {MOST_LINES} lines{whole}"
+            expanded = " with all that it includes and repeats" if card else ""
+            message = f"a netlist has at most {MOST_LINES} lines{expanded}"
             raise SpecError(Diagnostic("SF103", message, card.span if card else None, hint))
 
     def title_and_cards(self) -> tuple[str, list[Card]]:
@@ -154,11 +154,11 @@ class Deck:
         is_control, is_over = False, False
         lines = source.text[offset:].splitlines(keepends=True)
         self.count(len(lines))
-        for whole in lines:
-            start, offset = offset, offset + len(whole)
-            text = whole.strip()
-            first = start + len(whole) - len(whole.lstrip())
-            place = Span(source, first, first + len(text))
+        for line in lines:
+            start, offset = offset, offset + len(line)
+            text = line.strip()
+            first = start + len(line) - len(line.lstrip())
+            location = Span(source, first, first + len(text))
             if text.startswith("*") or not text:
                 if text.strip("* "):
                     self.comments.append(text.strip("* "))
@@ -168,7 +168,7 @@ class Deck:
                 if CHANGES.match(text):
                     hint = "write the value where the circuit is described, or remove the line"
                     message = f"'{text[:60]}' changes the circuit, and commands are left out"
-                    raise SpecError(Diagnostic("SF105", message, place, hint))
+                    raise SpecError(Diagnostic("SF105", message, location, hint))
                 continue
             code, _, comment = (*COMMENT.split(text, maxsplit=1), "", "")[:3]
             if not code.strip():
@@ -176,12 +176,12 @@ class Deck:
             if is_over:
                 hint = "remove it, or .end"
                 message = "this stands after .end: ngspice reads it, other simulators do not"
-                raise SpecError(Diagnostic("SF105", message, place, hint))
+                raise SpecError(Diagnostic("SF105", message, location, hint))
             if re.match(r"\.end\b", code, re.I):
                 is_over = True
             elif code.startswith("+") and statements:
                 before, begin, _, remark = statements[-1]
-                statements[-1] = (f"{before} {code[1:]}", begin, place.end, remark or comment.strip())
+                statements[-1] = (f"{before} {code[1:]}", begin, location.end, remark or comment.strip())
             else:
                 statements.append((code.strip(), first, first + len(code.strip()), comment.strip()))
         cards = []
@@ -202,10 +202,10 @@ class Deck:
         if depth >= MOST_DEPTH:
             raise head.refuse("subcircuits contain each other")
         if id(head) not in known:
-            own = [c for c in subcircuit.body if c.keyword not in INCLUDING]
-            body, inner = self.split(own, subcircuit.known)
+            direct = [c for c in subcircuit.body if c.keyword not in INCLUDING]
+            body, inner = self.split(direct, subcircuit.known)
             placed = (inner.get(c.instance_of()) for c in body if c.keyword[0] == "x")
-            known[id(head)] = len(own) + sum(
+            known[id(head)] = len(direct) + sum(
                 self.expanded(s, known, depth + 1) for s in placed if s is not None
             )
         return known[id(head)]
@@ -214,11 +214,11 @@ class Deck:
         self, cards: Sequence[Card], known: Mapping[str, Subcircuit], depth: int = 0
     ) -> tuple[list[Card], dict[str, Subcircuit]]:
         """Return the statements outside of subcircuits, included files among them, and all subcircuits."""
-        own: dict[str, Subcircuit] = dict(known)
-        return list(self._outside(cards, own, set(), depth)), own
+        subcircuits: dict[str, Subcircuit] = dict(known)
+        return list(self._outside(cards, subcircuits, set(), depth)), subcircuits
 
     def _outside(
-        self, cards: Sequence[Card], own: dict[str, Subcircuit], defined: set[str], depth: int
+        self, cards: Sequence[Card], subcircuits: dict[str, Subcircuit], defined: set[str], depth: int
     ) -> Iterator[Card]:
         inner: list[Card] = []
         head: Card | None = None
@@ -233,24 +233,24 @@ class Deck:
             if word in (".ends", ".eom") and level:
                 level -= 1
                 if level == 0 and head is not None and len(head.words) > 1:
-                    self._define(Subcircuit(head, inner, own), own, defined)
+                    self._define(Subcircuit(head, inner, subcircuits), subcircuits, defined)
                     continue
             if level:
                 inner.append(card)
             elif word in INCLUDING:
-                yield from self._outside(self._included(card, depth), own, defined, depth + 1)
+                yield from self._outside(self._included(card, depth), subcircuits, defined, depth + 1)
             else:
                 yield card
         if level and head is not None:
             raise head.refuse("this subcircuit has no .ends", "close it with a line .ends")
 
-    def _define(self, new: Subcircuit, own: dict[str, Subcircuit], defined: set[str]) -> None:
+    def _define(self, new: Subcircuit, subcircuits: dict[str, Subcircuit], defined: set[str]) -> None:
         """Add a subcircuit; the same text twice, as in a file that is included twice, is one."""
         name = new.head.words[1].lower()
-        if name in defined and [c.words for c in own[name].body] != [c.words for c in new.body]:
+        if name in defined and [c.words for c in subcircuits[name].body] != [c.words for c in new.body]:
             raise new.head.refuse(f"there are two subcircuits '{name[:60]}'", "rename or remove one of them")
         if name not in defined:
-            own[name] = new
+            subcircuits[name] = new
             defined.add(name)
 
     def _included(self, card: Card, depth: int) -> list[Card]:
@@ -275,8 +275,8 @@ class Deck:
 
     def _beside(self, card: Card, name: str) -> Source:
         """Read a file by its name seen from the netlist, or else from the file that includes it."""
-        own = card.span.source
-        folder = "" if own is self.source else posixpath.dirname(own.name)
+        including = card.span.source
+        folder = "" if including is self.source else posixpath.dirname(including.name)
         try:
             return self.read(name)
         except SpecError:

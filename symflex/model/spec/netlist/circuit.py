@@ -48,9 +48,9 @@ class Circuit:
 
     def value_name(self, name: str) -> str:
         """Return a name for a parameter or a definition that nothing else has."""
-        own = _free(name, lambda free: free.lower() in self.lowered)
-        self._take(own)
-        return own
+        free_name = _free(name, lambda free: free.lower() in self.lowered)
+        self._take(free_name)
+        return free_name
 
     def assign(
         self,
@@ -85,9 +85,9 @@ class Circuit:
         """Return the name of a node by its path, a new one where it is first met."""
         if path not in self.nodes:
             name = name if name[:1].isalpha() else f"n{name}"
-            own = _free(name, lambda free: free in self.named or free in self.reserved)
-            self._take(own)
-            self.nodes[path] = own
+            free_name = _free(name, lambda free: free in self.named or free in self.reserved)
+            self._take(free_name)
+            self.nodes[path] = free_name
         return self.nodes[path]
 
     def output(self, name: str, expression: str, card: Card) -> None:
@@ -103,9 +103,9 @@ class Circuit:
 
     def element(self, name: str) -> str:
         """Return a name for an element that no other one has."""
-        own = _free(name, self.placed.__contains__)
-        self.placed.add(own)
-        return own
+        free_name = _free(name, self.placed.__contains__)
+        self.placed.add(free_name)
+        return free_name
 
 
 def _free(name: str, is_taken: Callable[[str], bool]) -> str:

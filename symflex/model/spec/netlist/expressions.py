@@ -143,15 +143,15 @@ class _Parser:
         self.card, self.text, self.names = card, text, names
         self.depth = 0
         self.pieces: list[re.Match[str]] = []
-        self.next = place = 0
+        self.next = offset = 0
         # What braces and quotes within enclose is as in brackets.
         plain = re.sub(r"[{}]", lambda brace: "()"[brace[0] == "}"], text).rstrip()
-        while place < len(plain):
-            piece = PIECE.match(plain, place)
+        while offset < len(plain):
+            piece = PIECE.match(plain, offset)
             if piece is None:
                 raise self.refuse()
             self.pieces.append(piece)
-            place = piece.end()
+            offset = piece.end()
 
     def refuse(self, why: str = "", hint: str = "") -> SpecError:
         hint = hint or "expressions have numbers, parameters, + - * / ^ and functions"

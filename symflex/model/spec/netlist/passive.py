@@ -108,14 +108,14 @@ def coupling(line: PlacedCard) -> None:
     """Take a coupling of two inductors, or of more in pairs."""
     card = line.card
     plain, given = card.options(1)
-    rest = list(dropwhile(lambda w: w[0] in "Ll", plain[2:]))
-    inductors = plain[: len(plain) - len(rest)]
-    rest = [given.pop(k)[0] for k in ("k", "value") if k in given] or rest
-    if len(inductors) < 2 or not rest:  # noqa: PLR2004
+    values = list(dropwhile(lambda w: w[0] in "Ll", plain[2:]))
+    inductors = plain[: len(plain) - len(values)]
+    values = [given.pop(k)[0] for k in ("k", "value") if k in given] or values
+    if len(inductors) < 2 or not values:  # noqa: PLR2004
         raise card.refuse("a coupling names two inductors and its factor: K1 L1 L2 0.98")
-    line.check(rest[1:], given)
+    line.check(values[1:], given)
     name = line.element()
-    factor = line.valued(name, rest[0], "")
+    factor = line.valued(name, values[0], "")
     paths = [line.scope.path + w.lower() for w in inductors]
     if len(set(paths)) < len(paths):
         raise card.refuse("an inductor is coupled to itself")

@@ -192,8 +192,8 @@ class _Netlist:
         for name, text in assigned:
             declared = inside.parameters.get(name.lower())
             if declared is not None:
-                own = Parameter(declared.name, text, card, inside, rank=declared.rank)
-                inside.parameters[name.lower()] = own
+                replaced = Parameter(declared.name, text, card, inside, rank=declared.rank)
+                inside.parameters[name.lower()] = replaced
             elif name.lower() == "m":
                 line.check((), {"m": [text]})
             else:
@@ -244,9 +244,9 @@ class _Netlist:
                 circuit.output("V_" + "_".join(shown), format_expression(difference(nodes)), line.card)
         elif len(asked) == 1:
             read = line.current(asked[0])
-            (own,) = names(read)
-            is_winding = isinstance(own, Attribute) and own.name != "i"
-            label = asked[0] if is_winding or not isinstance(own, Attribute) else own.owner
+            (quantity,) = names(read)
+            is_winding = isinstance(quantity, Attribute) and quantity.name != "i"
+            label = asked[0] if is_winding or not isinstance(quantity, Attribute) else quantity.owner
             circuit.output(f"I_{label}", format_expression(read), line.card)
 
     def finished(self, body: Sequence[Card]) -> Circuit:

@@ -108,8 +108,8 @@ class Scope:
             if len(card.words) > 1:
                 self.models[card.words[1].lower()] = card
             return
-        rest = card.text[len(card.keyword) :].strip()
-        function = FUNCTION.fullmatch(rest)
+        definition = card.text[len(card.keyword) :].strip()
+        function = FUNCTION.fullmatch(definition)
         if function is not None:
             arguments = tuple(w for w in re.split(r"[\s,()]+", function[2].lower()) if w)
             self.functions[function[1].lower()] = Function(arguments, inner_text(function[3].strip()), card)

@@ -70,14 +70,14 @@ def controlled(line: PlacedCard) -> None:
             raise card.refuse(f"'{kind[:40]}' is not read", "write POLY(1)")
         count, plain = int(match[1]), plain[1:]
     width = 2 if letter in "EG" else 1
-    control, rest = plain[: width * count], plain[width * count :]
-    rest = [given.pop(k)[0] for k in ("gain", "value") if k in given] or rest
-    rest = _slopes(line, rest, count) if is_poly else rest
-    if len(control) < width * count or not rest:
+    control, coefficients = plain[: width * count], plain[width * count :]
+    coefficients = [given.pop(k)[0] for k in ("gain", "value") if k in given] or coefficients
+    coefficients = _slopes(line, coefficients, count) if is_poly else coefficients
+    if len(control) < width * count or not coefficients:
         raise card.refuse(f"'{line.word}' has no gain", "write its nodes, what controls it, and the gain")
-    line.check(rest[count:], given)
+    line.check(coefficients[count:], given)
     labels = [name if count == 1 else f"{name}_{k}" for k in range(1, count + 1)]
-    gains = [line.valued(n, w, GAIN_UNITS[letter]) for n, w in zip(labels, rest, strict=False)]
+    gains = [line.valued(n, w, GAIN_UNITS[letter]) for n, w in zip(labels, coefficients, strict=False)]
     if width == 2 and count == 1:  # noqa: PLR2004
         kind, key = ("vcvs", "mu") if is_voltage else ("vccs", "g")
         ports = {"inputs": [line.node(w) for w in control], "terminals": ends if is_voltage else ends[::-1]}
@@ -146,9 +146,9 @@ def _linear(line: PlacedCard, name: str, ends: Sequence[str], text: str, *, is_v
             raise line.card.refuse(f"'{line.word}' has a function that is not linear", SLOPE)
         terms = []
         for number, (signal, gain) in enumerate(gains.items(), 1):
-            own = name if len(gains) == 1 else f"{name}_{number}"
+            label = name if len(gains) == 1 else f"{name}_{number}"
             unit = {("v", False): "A/V", ("i", True): "Ohm"}.get((readings.kinds[signal], is_voltage), "")
-            terms.append(product_of([line.named(own, gain, None, unit), readings.signals[signal]]))
+            terms.append(product_of([line.named(label, gain, None, unit), readings.signals[signal]]))
         line.source(name, ends, format_expression(sum_of(terms)), is_voltage=is_voltage)
 
     line.build.later.append(finish)

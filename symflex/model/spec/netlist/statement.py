@@ -212,8 +212,8 @@ class PlacedCard:
 
     def carries_own(self, name: str, *, is_voltage: bool) -> None:
         """Tell the current of a source, whose .i is delivered: a voltage delivers it at its first node."""
-        own = Attribute(name, "i")
-        self.carries(negative(own) if is_voltage else own)
+        delivered = Attribute(name, "i")
+        self.carries(negative(delivered) if is_voltage else delivered)
 
 
 def difference(nodes: Sequence[str]) -> Expression:
