@@ -95,12 +95,12 @@ class InputShaper(Printed):
 
         modes: list[dict[str, object]] = []
         for pole in self.poles:
-            place = pole.decimal(self.digits)
+            decimal = pole.decimal(self.digits)
             modes.append(
                 {
-                    "re": place.re,
-                    "im": place.im,
-                    "radius": place.radius,
+                    "re": decimal.re,
+                    "im": decimal.im,
+                    "radius": decimal.radius,
                     "frequency_hz": pole.frequency_hz(),
                     "damping_ratio": pole.damping_ratio(),
                     **told("residual", self.residual(pole.enclosure())),
@@ -120,12 +120,16 @@ class InputShaper(Printed):
         digits = min(self.digits, TEXT_DIGITS)
         lines = []
         for pole in self.poles:
-            left = self.residual(pole.enclosure())
+            residual = self.residual(pole.enclosure())
             # A bound below the range of doubles is none of 0.
-            most = max(float(left.upper()), LEAST)
-            said = f"at most {most:.2g}" if left.contains(0) else figure(left, SHORT_DIGITS, trimmed=True)
-            *_, place, damping = PrintedRoot(pole, is_pair=True).cells(TERMINAL_COLUMNS, digits)
-            lines.append(f"  mode at {place} Hz, zeta {damping}: residual vibration {said}")
+            most = max(float(residual.upper()), LEAST)
+            said = (
+                f"at most {most:.2g}"
+                if residual.contains(0)
+                else figure(residual, SHORT_DIGITS, trimmed=True)
+            )
+            *_, frequency, damping = PrintedRoot(pole, is_pair=True).cells(TERMINAL_COLUMNS, digits)
+            lines.append(f"  mode at {frequency} Hz, zeta {damping}: residual vibration {said}")
         rows = [("t [s]", "amplitude")]
         rows += [(figure(t, digits), figure(a, digits)) for t, a in self.impulses]
         heading = f"{self.tf}   {self.title}, {len(self.impulses)} impulses"
@@ -184,11 +188,11 @@ def input_shaper(
     with precision(bits):
         impulses = [(arb(0), arb(1))]
         for root in chosen:
-            own = _of_mode(bound, root, kind)
-            if len(impulses) * len(own) > MOST_IMPULSES:
+            of_mode = _of_mode(bound, root, kind)
+            if len(impulses) * len(of_mode) > MOST_IMPULSES:
                 message = f"the modes together need more than {MOST_IMPULSES} impulses"
                 raise refused(message, "shape fewer modes")
-            impulses = [(t + u, a * b) for t, a in impulses for u, b in own]
+            impulses = [(t + u, a * b) for t, a in impulses for u, b in of_mode]
         impulses.sort(key=lambda impulse: impulse[0].mid())
     note = "joint shapers are not computed: one for each mode, in series" if joint and modes > 1 else ""
     return InputShaper(bound.name, kind, chosen, tuple(impulses), digits, bits, note)
@@ -197,10 +201,10 @@ def input_shaper(
 def _of_mode(bound: AnyBoundFunction, root: Root, kind: str) -> list[tuple[arb, arb]]:
     half = arb.pi() / root.im
     sizes = SHAPERS[kind]((root.re * half).exp())
-    whole = sum(sizes, arb(0))
-    if not all(size / whole > 0 for size in sizes):
+    total = sum(sizes, arb(0))
+    if not all(size / total > 0 for size in sizes):
         message = (
             f"the mode of {bound.name} at {root.frequency_hz():g} Hz is too strongly damped for '{kind}'"
         )
         raise ModelError(Diagnostic("SF814", message, None, "use zv, or no shaper: the mode hardly rings"))
-    return [(half * i, size / whole) for i, size in enumerate(sizes)]
+    return [(half * i, size / total) for i, size in enumerate(sizes)]

@@ -74,9 +74,9 @@ def _phase_of(roots: Iterable[Root], omega: npt.NDArray[np.float64]) -> npt.NDAr
         re = -0.0 if root.on_imaginary_axis else float(root.re.mid())
         exact = exact_fraction(root.im)
         im = float(exact)
-        rest = float(exact - Fraction(im))
+        rounding = float(exact - Fraction(im))
         # Close to the root im - omega is exact in double precision, and rest holds the digits im lost.
-        total += root.multiplicity * np.arctan2(-omega * re, re * re + im * ((im - omega) + rest))
+        total += root.multiplicity * np.arctan2(-omega * re, re * re + im * ((im - omega) + rounding))
     return total
 
 
@@ -359,12 +359,12 @@ def _network_turns(
     order = _order_at_rest(roots)
     phase = order * np.pi / 2 + _phase_of(roots.zeros, path) - _phase_of(roots.poles, path)
     usable = np.isfinite(there_and_below) & (there_and_below != 0) & (path > 0)
-    rest = np.angle(np.where(usable, there_and_below, 1) * np.exp(-1j * phase))
-    rest[usable] = np.unwrap(rest[usable])
-    start = rest[usable][0]
+    remainder = np.angle(np.where(usable, there_and_below, 1) * np.exp(-1j * phase))
+    remainder[usable] = np.unwrap(remainder[usable])
+    start = remainder[usable][0]
     if np.cos(start) < 0:
-        rest += (np.pi if order < 0 else -np.pi) - start
-    return _turns_to(np.where(usable, phase + rest, np.nan)[len(below) :][places], omega, values)
+        remainder += (np.pi if order < 0 else -np.pi) - start
+    return _turns_to(np.where(usable, phase + remainder, np.nan)[len(below) :][places], omega, values)
 
 
 def _follow_turns(

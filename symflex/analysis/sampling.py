@@ -236,8 +236,8 @@ def _held(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling) 
     parts: list[tuple[int, list[arb]]] = []
     for term in given.terms:
         delay = _delay(term.late, sampling)
-        whole = ceil(delay / sampling.sample)
-        ahead = whole * sampling.sample - delay
+        samples = ceil(delay / sampling.sample)
+        ahead = samples * sampling.sample - delay
         quotient = EnclosedQuotient(((term.numerator, 1),), ((given.denominator, 1),), acb(1))
         exponentials = partial_fractions(quotient, given.poles, 1)
         if exponentials is None:
@@ -254,13 +254,13 @@ def _held(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling) 
         above = [sum(each, arb(0)) for each in products]
         for beyond in above[n + 1 :]:
             _check(bound, acb(beyond), acb(size))
-        parts.append((whole, above[: n + 1]))
-    late = min(whole for whole, _ in parts)
-    extra = max(whole for whole, _ in parts) - late
+        parts.append((samples, above[: n + 1]))
+    late = min(samples for samples, _ in parts)
+    extra = max(samples for samples, _ in parts) - late
     total = [arb(0)] * (n + 1 + extra)
-    for whole, above in parts:
+    for samples, above in parts:
         for i, c in enumerate(above):
-            total[i + whole - late] = total[i + whole - late] + c
+            total[i + samples - late] = total[i + samples - late] + c
     none = [arb(0)] * extra
     return total, [*below, *none], (*poles, *(acb(0) for _ in none)), None, late, size
 
@@ -402,17 +402,19 @@ def _told(coefficients: Sequence[arb], size: arb | None = None) -> tuple[arb, ..
 
 def _roots_of(coefficients: Sequence[arb]) -> tuple[acb, ...] | None:
     """Return the roots of a polynomial in descending powers; None if they cannot be separated."""
-    left = list(coefficients)
-    while left and left[0] == 0:
-        left.pop(0)
+    remaining = list(coefficients)
+    while remaining and remaining[0] == 0:
+        remaining.pop(0)
     at_zero = 0
-    while left and left[-1] == 0:
-        left.pop()
+    while remaining and remaining[-1] == 0:
+        remaining.pop()
         at_zero += 1
-    if not left:
+    if not remaining:
         return ()
     try:
-        roots = acb_poly([acb(c) for c in left[::-1]]).roots(tol=arb(2) ** -GOOD_BITS, maxprec=LAST_DIGITS)
+        roots = acb_poly([acb(c) for c in remaining[::-1]]).roots(
+            tol=arb(2) ** -GOOD_BITS, maxprec=LAST_DIGITS
+        )
     except ValueError:
         return None
     # Of isolated roots one whose ball meets the real axis is its own conjugate.

@@ -195,11 +195,11 @@ class ModeShape:
         position = part_along.position(quantity)
         start, end = self.domain(part)
         slack = END_TOLERANCE * (end - start)
-        for place in places.ravel():
-            if not start - slack <= place <= end + slack:
-                message = f"x = {place:g} lies outside '{part}', which reaches from {start:g} to {end:g}"
+        for at in places.ravel():
+            if not start - slack <= at <= end + slack:
+                message = f"x = {at:g} lies outside '{part}', which reaches from {start:g} to {end:g}"
                 raise UsageError(Diagnostic("SF240", message))
-        return [part_along.at(Fraction(float(place)))[position] for place in places.ravel()]
+        return [part_along.at(Fraction(float(at)))[position] for at in places.ravel()]
 
     def _repr_png_(self) -> tuple[bytes, dict[str, int]] | None:
         from symflex.figures import picture_of_shape  # only notebooks ask

@@ -458,8 +458,8 @@ class Model:
 
         names: tuple[str, ...] = tuple(over) if not isinstance(over, str) else (over,) if over else ()
         each = tuple((name, *ends) for name, ends in (ranges or {}).items())
-        own = (gain, limits, up_to_hz, checked_digits(digits), names, each, resolve)
-        given = StabilityOptions(*own, peaks=peaks, spread=spread)
+        arguments = (gain, limits, up_to_hz, checked_digits(digits), names, each, resolve)
+        given = StabilityOptions(*arguments, peaks=peaks, spread=spread)
         with budget_of(budget).besides().entered():
             if spread is not None:
                 return stability_spread(self.resolved, given, values)

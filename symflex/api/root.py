@@ -352,10 +352,10 @@ class SensitivityTable(tuple[Sensitivity, ...]):
         rows = []
         for moved in self:
             root, relative = moved.root.certified_root, moved.moved.normalised
-            place = (figure(part, SHOWN_DIGITS) for part in (root.re, root.im))
+            location = (figure(part, SHOWN_DIGITS) for part in (root.re, root.im))
             share = (moved.status, "")
             if relative is not None:
                 share = (figure(relative.real, 6), figure(relative.imag, 6))
-            rows.append((moved.kind, *place, escape_html(moved.parameter), *share))
+            rows.append((moved.kind, *location, escape_html(moved.parameter), *share))
         head = ("", "Re [rad/s]", "Im [rad/s]", "p", "Re (p/s) ds/dp", "Im (p/s) ds/dp")
         return _table(head, rows)

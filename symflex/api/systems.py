@@ -209,14 +209,14 @@ def _quotients(given: Any) -> list[list[Quotient]]:  # noqa: ANN401 (a system of
 def _with_roots(gain: float, roots: Sequence[complex]) -> str:
     """Return a product over roots; two that are conjugate make a square and a rest, without rounding."""
     factors = [_coefficient(gain)]
-    left = [complex(root) for root in _rows("roots", roots)[0]]
-    while left:
-        root = left.pop()
+    remaining = [complex(root) for root in _rows("roots", roots)[0]]
+    while remaining:
+        root = remaining.pop()
         real = f"s - {_coefficient(root.real)}"
         if root.imag:
-            if root.conjugate() not in left:
+            if root.conjugate() not in remaining:
                 raise refused(f"the root {root:g} has no conjugate", "a system's coefficients are real")
-            left.remove(root.conjugate())
+            remaining.remove(root.conjugate())
             real = f"({real})^2 + {_coefficient(root.imag)}^2"
         factors.append(f"({real})")
     return "*".join(factors)
@@ -244,10 +244,10 @@ def _along(what: str, given: object, names: Sequence[str]) -> list[object]:
             )
         return [int(n == given) for n in names]
     if isinstance(given, Integral):
-        place = int(given)
-        if not -len(names) <= place < len(names):
-            raise refused(f"{what} is at {place}", f"unknowns are counted from 0 to {len(names) - 1}")
-        return [int(i == place % len(names)) for i in range(len(names))]
+        position = int(given)
+        if not -len(names) <= position < len(names):
+            raise refused(f"{what} is at {position}", f"unknowns are counted from 0 to {len(names) - 1}")
+        return [int(i == position % len(names)) for i in range(len(names))]
     rows = _rows(what, given)
     entries = [e for row in rows for e in row]
     if len(entries) != len(names) or len(rows) not in (1, len(names)):

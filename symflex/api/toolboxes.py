@@ -46,13 +46,13 @@ OF_LOOPS = ("stability", "locus", "colocation", "sweep")  # methods of a model a
 def refuse_attribute(item: object, name: str, bound: type | None = None, way: str = "G.bind()") -> NoReturn:
     """Say what an attribute is called here, or the way to what has numbers, which is ``bound``."""
     message = f"'{type(item).__name__}' object has no attribute '{name}'"
-    own = CALLED.get(name, name)
-    if own != name and hasattr(type(item), own):
-        message += f"; it is called {own}"
-    elif not name.startswith("_") and hasattr(bound, own):
-        message += f"; a function has it once it has numbers: {way}.{own}"
-    elif own in OF_LOOPS:
-        message += f"; it is asked of a model, model.{own}"
+    called = CALLED.get(name, name)
+    if called != name and hasattr(type(item), called):
+        message += f"; it is called {called}"
+    elif not name.startswith("_") and hasattr(bound, called):
+        message += f"; a function has it once it has numbers: {way}.{called}"
+    elif called in OF_LOOPS:
+        message += f"; it is asked of a model, model.{called}"
     raise AttributeError(message, name=name, obj=item)
 
 

@@ -93,7 +93,7 @@ class Form:
     @property
     def closed(self) -> tuple[tuple[sympy.Expr, sympy.Expr], ...]:
         """Closed forms of tapered members, ``Z_11(l)``, ``besseli(0, q)``, then the names in them."""
-        return tuple((self._sympy(left), self._sympy(e)) for left, e in self.printed.closed)
+        return tuple((self._sympy(function), self._sympy(e)) for function, e in self.printed.closed)
 
     @property
     def statement(self) -> tuple[str, ...]:

@@ -81,14 +81,14 @@ def budgeted(command: Callable[..., int]) -> Callable[..., int]:
         is_program = click.get_current_context().find_root().obj is WATCHED
         # Called from Python, a command does not answer for what its caller holds.
         held = 0 if is_program else memory_held()
-        whole = Budget(budget, memory=held + int(IN_ORDER * memory))
+        entered = Budget(budget, memory=held + int(IN_ORDER * memory))
         is_watched = is_program and sys.platform == "linux"
         if is_watched:
             code = _watched(budget, memory)
             if code is not None:
                 return code
         waiting = Waiting(str(click.get_current_context().info_name)) if is_program else nullcontext()
-        with waiting, whole.entered():
+        with waiting, entered.entered():
             code = command(*args, **kwargs)
         if is_watched:
             os.kill(os.getppid(), FINISHED)

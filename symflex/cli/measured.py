@@ -71,18 +71,18 @@ def fit(given: FitOptions) -> int:
     with ProgressBar() as bar, budget.reporting_to(bar).entered():
         resonances = fitted(every, given)
     shapes = mode_shapes(resonances, every) if given.driving else None
-    whole = resonances
+    together = resonances
     if given.driving and len(every) > 1 and (given.output or given.figure):
         driven_first = sorted(every, key=lambda response: response.name != given.driving)
         with ProgressBar() as bar, budget.reporting_to(bar).entered():
-            whole = fitted(driven_first, replace(given, tfs=(), modes=int(resonances.modes.sum()) or None))
-        why = "".join(f" (poor: {reason})" for reason in whole.poor)
+            together = fitted(driven_first, replace(given, tfs=(), modes=int(resonances.modes.sum()) or None))
+        why = "".join(f" (poor: {reason})" for reason in together.poor)
         note(f"files and figures have all responses, fitted with the same poles{why}")
-    if given.strict and (poor := resonances.poor + whole.poor):
+    if given.strict and (poor := resonances.poor + together.poor):
         hint = "leave out --strict to print it anyway"
         raise FitError(Diagnostic("SF618", f"the fit is poor: {poor[0]}", None, hint))
     if given.output:
-        text = fit_specification(whole, Path(given.output).parent, given.loop)
+        text = fit_specification(together, Path(given.output).parent, given.loop)
         write(given.output, text)
         try:
             pipeline.loads(text, given.output)
@@ -94,7 +94,7 @@ def fit(given: FitOptions) -> int:
         lambda: fit_json(resonances, shapes),
         lambda: passages_text(fit_passages(resonances, shapes), terminal_width()),
     )
-    _draw(whole, given)
+    _draw(together, given)
     return 0
 
 

@@ -43,8 +43,8 @@ def reporting(command: Callable[P, int | None]) -> Callable[P, int]:
             return 0
         except OSError as error:
             # What reads or writes a file reports it with its own code; this is all else a system can refuse.
-            place = f"'{error.filename}': " if error.filename else ""
-            said = f"the system refused an operation: {place}{error.strerror or error}"
+            location = f"'{error.filename}': " if error.filename else ""
+            said = f"the system refused an operation: {location}{error.strerror or error}"
             show_error(UsageError(Diagnostic("SF905", said)))
             return UsageError.exit_code
 

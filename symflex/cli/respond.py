@@ -70,14 +70,14 @@ def show_response(spec: Specification, given: RespondOptions) -> int:
     from symflex.data.measurement.input_signal import ENDINGS
     from symflex.roots.locate import as_quotient
 
-    place = Path(given.record or given.to)
-    is_file = given.record is not None or place.suffix.lower() in ENDINGS
+    path = Path(given.record or given.to)
+    is_file = given.record is not None or path.suffix.lower() in ENDINGS
     _check_options(given, is_file=is_file)
     initial = read_settings(given.initial, "--initial")
     until = None if given.until is None else duration(given.until, "--until")
     model = spec.load()
     pair = first_pair(model, given.tf, "showing")
-    signal, measured = _samples(place, given, pair[0]) if is_file else (None, None)
+    signal, measured = _samples(path, given, pair[0]) if is_file else (None, None)
     (bound,) = pipeline.derive_for_roots(model, [pair], is_explained=True)
     free = free_motion(model, pair, initial) if initial else None
     shaper = None
@@ -98,11 +98,11 @@ def show_response(spec: Specification, given: RespondOptions) -> int:
         wanted = tuple(dict.fromkeys(signal.times))
         if until is not None or given.points is not None:
             wanted = evenly(until or signal.times[-1], given.points or POINTS)
-        whole = as_quotient(bound)
+        quotient = as_quotient(bound)
         forced = forced_response(
-            whole, signal.times, signal.values, wanted, given.digits, shaper, is_held=given.hold, free=free
+            quotient, signal.times, signal.values, wanted, given.digits, shaper, is_held=given.hold, free=free
         )
-        response = replace(forced, input=place.name)
+        response = replace(forced, input=path.name)
         if measured is not None:
             kept = np.interp(forced.times, np.array(signal.times, np.float64), measured[1])
             response = replace(response, measured=(measured[0], kept))
@@ -129,7 +129,7 @@ def show_response(spec: Specification, given: RespondOptions) -> int:
 
 
 def _samples(
-    place: Path, given: RespondOptions, output: str
+    path: Path, given: RespondOptions, output: str
 ) -> tuple[InputSignal, tuple[str, npt.NDArray[np.float64]] | None]:
     """Return the input that a file gives, and of a record the output that was measured; print guesses."""
     from symflex.data.measurement import record_in_time
@@ -137,13 +137,13 @@ def _samples(
 
     measured: tuple[str, npt.NDArray[np.float64]] | None = None
     if given.record is None:
-        signal = read_signal(place)
-    elif (record := record_in_time(place, given.columns)) is None:
-        raise refused(f"'{place}' is not a time record", "a column called time, or --columns t,u,y")
+        signal = read_signal(path)
+    elif (record := record_in_time(path, given.columns)) is None:
+        raise refused(f"'{path}' is not a time record", "a column called time, or --columns t,u,y")
     else:
         signal, measured = record.driven(output)
     for guess in signal.guesses:
-        note(f"{place}: {guess}")
+        note(f"{path}: {guess}")
     return signal, measured
 
 

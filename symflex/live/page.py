@@ -143,9 +143,9 @@ def _data(contents: Contents, names: Mapping[str, str], pairs: Sequence[tuple[st
 def _parameter(p: ModelParameter, identifier: str, is_moving: bool) -> dict[str, Any]:
     """Return what the page knows of a parameter: values in SI units, ends of its slider in those written."""
     written, unit = p.as_written()
-    value, own = (None if x is None else nearest_double(x.rational, x.pi_power) for x in (p.value, written))
+    value, shown = (None if x is None else nearest_double(x.rational, x.pi_power) for x in (p.value, written))
     ends = [p.as_written(end)[0] for end in p.limits or ()]
-    low, high = [nearest_double(x.rational, x.pi_power) for x in ends if x] or _ends(own, p)
+    low, high = [nearest_double(x.rational, x.pi_power) for x in ends if x] or _ends(shown, p)
     scale = nearest_double(p.scale.rational, p.scale.pi_power) if p.written_unit else 1.0
     return {
         "name": p.name, "id": identifier, "unit": "" if unit == "1" else unit, "scale": scale, "value": value,
@@ -202,22 +202,22 @@ def _pieces(model: Model, shown: Sequence[str]) -> list[str | list[Any]]:
     for entry in table.entries if table else ():
         if entry.key not in shown:
             continue
-        inner, own = entry, entry.value if isinstance(entry.value, TableValue) else None
-        place = [shown.index(entry.key), "" if own and own.get("unit") else units[entry.key]]
-        if own and (value := own.get("value")):
+        inner, declared = entry, entry.value if isinstance(entry.value, TableValue) else None
+        slot = [shown.index(entry.key), "" if declared and declared.get("unit") else units[entry.key]]
+        if declared and (value := declared.get("value")):
             inner = value
-        elif own:
-            first = next((e.key_span.start for e in own.entries), 0)
+        elif declared:
+            first = next((e.key_span.start for e in declared.entries), 0)
             if first and source.text[first - 1] != ".":
-                separator = "\n" if own.span.text.startswith("[") else ", "
-                places.append((first, first, [*place, "", separator]))
+                separator = "\n" if declared.span.text.startswith("[") else ", "
+                places.append((first, first, [*slot, "", separator]))
             continue
         span = inner.value.span
-        places.append((span.start, span.end, [*place, span.text]))
+        places.append((span.start, span.end, [*slot, span.text]))
     pieces: list[str | list[Any]] = []
     last = 0
-    for start, end, place in sorted(places):
-        pieces += [source.text[last:start], place]
+    for start, end, slot in sorted(places):
+        pieces += [source.text[last:start], slot]
         last = end
     return [*pieces, source.text[last:]]
 

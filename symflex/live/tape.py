@@ -105,11 +105,11 @@ def _parts(tf: TransferFunction, bound: BoundTransferFunction, number: int) -> I
                 counts = {"degree": degree, "order": lowest, "multiplicity": exponent}
                 yield counts | _taped(tf, straight(forge, [value]))
         return
-    own = (bound.num, bound.den)[number]
-    function, factor = KernelFunction(bound, own), Factored.number(ring, 1)
+    exact = (bound.num, bound.den)[number]
+    function, factor = KernelFunction(bound, exact), Factored.number(ring, 1)
     for wave in tf.kernels.wavenumbers:
-        q = own.ring.generator(wave)
-        change = function.part.exponent_of(q) - own.exponent_of(q)
+        q = exact.ring.generator(wave)
+        change = function.part.exponent_of(q) - exact.exponent_of(q)
         factor = factor * Factored.generator(ring, wave) ** change
     orders = [OriginSeries(ring, tf.kernels, terms=n).order(side * factor) for n in SERIES_TERMS]
     order = next((n for n in orders if n is not None), None)

@@ -192,8 +192,8 @@ def _widths(table: Table, room: float) -> list[float]:
         kept = least
     # A root keeps one long text from taking all the room.
     wants = [(n - k) ** 0.5 for n, k in zip(natural, kept, strict=True)]
-    left = max(room - sum(kept), 0.0) / (sum(wants) or 1.0)
-    return [k + left * w for k, w in zip(kept, wants, strict=True)]
+    spare = max(room - sum(kept), 0.0) / (sum(wants) or 1.0)
+    return [k + spare * w for k, w in zip(kept, wants, strict=True)]
 
 
 def _lines(cell: Cell) -> list[list[tuple[str, float]]]:

@@ -38,11 +38,11 @@ def model_cell(facts: ModelFacts) -> Cell:
 
 def flexibility_cell(facts: ModelFacts) -> Iterator[Run]:
     """Return which kinds of flexibility a model describes."""
-    for place in PLACES:
-        parts = [c for c in facts.compliances if c.place == place]
+    for location in PLACES:
+        parts = [c for c in facts.compliances if c.place == location]
         if parts:
             how = "bending" if all(c.is_bending for c in parts) else "axial or torsional"
-            yield from (place, " ", Aside(how), "\n")
+            yield from (location, " ", Aside(how), "\n")
 
 
 def modes_cell(facts: ModelFacts) -> Cell:

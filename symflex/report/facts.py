@@ -108,8 +108,8 @@ class TransferFacts:
         if not self.is_infinite:
             return inf
         # Poles in the right half-plane are listed wherever they lie.
-        left = [p for p in self.poles if not p.is_in_right_half_plane] or self.poles
-        ends = [max((r.frequency_hz for r in roots), default=0.0) for roots in (left, self.zeros)]
+        left_half_plane = [p for p in self.poles if not p.is_in_right_half_plane] or self.poles
+        ends = [max((r.frequency_hz for r in roots), default=0.0) for roots in (left_half_plane, self.zeros)]
         return min(ends) if self.zeros else ends[0]
 
     @property
@@ -367,9 +367,9 @@ def _changes(audit: Audit) -> str:
 
 def _root_fact(root: Root) -> RootFact:
     on_axis: Place = "imaginary axis" if root.on_imaginary_axis else "real axis" if root.is_real else "plane"
-    place: Place = "origin" if root.is_zero else on_axis
+    location: Place = "origin" if root.is_zero else on_axis
     re, im, radius = float(root.re.mid()), float(root.im.mid()), float(root.decimal(15).radius)
-    return RootFact(re, im, radius, place, root.multiplicity, root.frequency_hz())
+    return RootFact(re, im, radius, location, root.multiplicity, root.frequency_hz())
 
 
 def _truncation(study: Study, tf: TransferFunction, located: PoleZeroMap) -> TruncationFacts | None:

@@ -171,13 +171,13 @@ def _table(table: Table) -> str:
     is_stacked = len(table.columns) > PAIR and has_text
     is_wide = len(table.columns) >= WIDE and has_text
     kind = ' class="stack"' if is_stacked else ""
-    place = "scroll wide" if is_wide else "scroll"
+    scroll = "scroll wide" if is_wide else "scroll"
     label = _escape(table.caption or "Table")
     head = "".join(f'<th scope="col" class="{c.side}">{_runs(c.head)}</th>' for c in table.columns)
     body = "\n".join(_row(row, table.columns) for row in table.rows)
     caption = f"<caption>{_escape(table.caption)}</caption>" if table.caption else ""
     return (
-        f'<div class="{place}" tabindex="0" role="region" aria-label="{label}">'
+        f'<div class="{scroll}" tabindex="0" role="region" aria-label="{label}">'
         f"<table{kind}>{caption}<thead><tr>{head}</tr></thead>\n<tbody>\n{body}\n</tbody></table></div>"
     )
 

@@ -58,10 +58,10 @@ def compliances(model: Model) -> tuple[Compliance, ...]:
         if use.element.compliance:
             is_bending = use.element.compliance == "bending"
             is_grounded = any(r.is_ground for _, references in use.nodes for r in references)
-            place = _place(is_bending, is_grounded=is_grounded)
+            location = _place(is_bending, is_grounded=is_grounded)
             if is_grounded and _is_felt(model, use):
-                place = "contact"
-            compliant.append(Compliance(use.name, is_bending, place))
+                location = "contact"
+            compliant.append(Compliance(use.name, is_bending, location))
     for field in model.fields:
         orders = [n.order for e in field.equations for n in names(e) if isinstance(n, Derivative)]
         is_bending = max(orders, default=0) >= BEAM_ORDER or len(field.unknowns) > 1
@@ -88,7 +88,7 @@ def is_colocated(model: Model, output: Output, source: Input) -> bool | None:
     grown = True
     while grown:
         reached = [group for group in groups if group & joined and not group <= joined]
-        joined |= {place for group in reached for place in group}
+        joined |= {node for group in reached for node in group}
         grown = bool(reached)
     return ends <= joined
 
@@ -238,12 +238,12 @@ def _limit(
     ring: Ring, value: Factored, symbol: str, choose: Callable[[list[int]], int]
 ) -> tuple[fmpz_mpoly, int]:
     """Return the limits of all factors, multiplied, and the power of the symbol that goes with them."""
-    place = ring.index[symbol]
+    index = ring.index[symbol]
     product, power = ring.constant(1), 0
     for factor, exponent in value.factors:
         terms = {tuple(map(int, monomial)): int(c) for monomial, c in factor.terms()}
-        kept = choose([monomial[place] for monomial in terms])
-        limit = {(*m[:place], 0, *m[place + 1 :]): c for m, c in terms.items() if m[place] == kept}
+        kept = choose([monomial[index] for monomial in terms])
+        limit = {(*m[:index], 0, *m[index + 1 :]): c for m, c in terms.items() if m[index] == kept}
         product, power = product * ring.context.from_dict(limit) ** exponent, power + kept * exponent
     return product, power
 

@@ -79,10 +79,10 @@ class PrimePoints:
         ratio = self.ratio(pair, factor, [constrained]) if same_generators(constrained, equations) else None
         if ratio is None:
             return None
-        s, own = Factored.generator(equations.ring, LAPLACE), opened(equations, factor)
-        order = own.exponent_of(equations.ring.generator(LAPLACE))
+        s, factored = Factored.generator(equations.ring, LAPLACE), opened(equations, factor)
+        order = factored.exponent_of(equations.ring.generator(LAPLACE))
         transmission = None if ratio.order is None else s**ratio.order
-        filtered = varying(equations, own / s**order)
+        filtered = varying(equations, factored / s**order)
         return Relation(order, filtered, transmission, s**0, has_zeros=True, is_delayed=ratio.is_delayed)
 
     def varies(self, system: Equations) -> bool:

@@ -150,12 +150,12 @@ class ReplacedCondition:
             if isinstance(n, Derivative) and n.name == self.measured.name
         )
         calls = [n for n in names(self.loaded) if isinstance(n, Call) and n.name in self.field.unknowns]
-        own = [n.order for n in calls if n.name == self.measured.name]
-        place = format_expression(self.measured.argument)
+        orders = [n.order for n in calls if n.name == self.measured.name]
+        position = format_expression(self.measured.argument)
         return (
-            bool(own)
-            and max(own) + self.measured.order == order - 1
-            and all(format_expression(c.argument) == place for c in calls)
+            bool(orders)
+            and max(orders) + self.measured.order == order - 1
+            and all(format_expression(c.argument) == position for c in calls)
         )
 
 
@@ -164,8 +164,8 @@ def replace_condition(model: Model, source: Input, output: Expression) -> Replac
     unknowns = {u for f in model.fields for u in f.unknowns}
     calls = [*{n: None for n in names(output) if isinstance(n, Call) and n.name in unknowns}]
     constants = {p.name for p in model.parameters} | {d.name for d in model.definitions} | {"s", "pi"}
-    rest = [n for n in names(output) if not isinstance(n, Call)]
-    if len(calls) != 1 or any(not isinstance(n, Name) or n.name not in constants for n in rest):
+    free_names = [n for n in names(output) if not isinstance(n, Call)]
+    if len(calls) != 1 or any(not isinstance(n, Name) or n.name not in constants for n in free_names):
         return None
     places = [(f, c) for f in model.fields for c in f.conditions if holds(c, source.name)]
     if len(places) != 1 or sum(holds(e, source.name) for _, e in expressions_of(model)) != 1:

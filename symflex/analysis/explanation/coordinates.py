@@ -131,11 +131,11 @@ def _in_nodes(equations: Equations, form: LinearForm) -> Mapping[Variable, Facto
             return terms
         coefficient = terms.pop(dependent)
         law = collected(laws[dependent])
-        own = law.pop(dependent, None)
-        if own is None:
+        pivot = law.pop(dependent, None)
+        if pivot is None:
             return None
         for variable, value in law.items():
-            change = -coefficient * value / own
+            change = -coefficient * value / pivot
             terms[variable] = terms[variable] + change if variable in terms else change
         terms = {v: c for v, c in terms.items() if not c.is_zero}
     return None
@@ -168,10 +168,10 @@ def in_one_way(model: Model) -> Model:
     """
     line = Line.of_numbers(model.definitions, ((p.name, p.value) for p in model.parameters))
     ends = {
-        (f"{use.name}.{name}", line.key(place)): shown
+        (f"{use.name}.{name}", line.key(position)): shown
         for use in model.elements
         if isinstance(use.element, LineElement)
-        for name, place, shown in _ends(model, use, use.element)
+        for name, position, shown in _ends(model, use, use.element)
     }
     spelled: dict[Hashable, Expression] = {}
     unknowns = {u for field in model.fields for u in field.unknowns}
@@ -179,11 +179,11 @@ def in_one_way(model: Model) -> Model:
     def written(expression: Expression) -> Expression:
         changed: dict[Expression, Expression] = {}
         for call in (n for n in names(expression) if isinstance(n, Call)):
-            place = line.key(call.argument) if call.name in unknowns or "." in call.name else None
+            position = line.key(call.argument) if call.name in unknowns or "." in call.name else None
             if call.name in unknowns:
-                changed[call] = replace(call, argument=spelled.setdefault(place, call.argument))
-            elif not call.order and (call.name, place) in ends:
-                changed[call] = ends[call.name, place]
+                changed[call] = replace(call, argument=spelled.setdefault(position, call.argument))
+            elif not call.order and (call.name, position) in ends:
+                changed[call] = ends[call.name, position]
         return replace_values(expression, changed)
 
     for field in model.fields:
@@ -209,7 +209,7 @@ def _ends(
     nodes = {node.name: node for node in model.nodes}
     read_otherwise = {each.name for each in model.signals} | {each.name for each in model.inputs}
     domain = element.ports[0].domain
-    for reference, place in zip(
+    for reference, position in zip(
         references, (Number(Fraction(0)), dict(use.values)[element.length]), strict=True
     ):
         if reference.is_ground or reference.node in read_otherwise:
@@ -219,7 +219,7 @@ def _ends(
             moved = variable_of(picked, nodes[reference.node], domain)
             shown = Attribute(moved.owner, moved.component) if moved.component else Name(moved.owner)
             for name in called:
-                yield name, place, shown
+                yield name, position, shown
 
 
 def parted_at(model: Model, output: str) -> Model:
@@ -259,7 +259,7 @@ def parted_at(model: Model, output: str) -> Model:
         return model
     point = f"point of {owner}"  # no name contains blanks
     node = NetworkNode(point, domain)
-    left = Sum((dict(use.values)[element.length], Negative(call.argument)))
+    remaining = Sum((dict(use.values)[element.length], Negative(call.argument)))
 
     def piece(name: str, ends: tuple[NodeReference, ...], long: Expression) -> PlacedElement:
         values = tuple((n, long if n == element.length else v) for n, v in use.values)
@@ -268,7 +268,7 @@ def parted_at(model: Model, output: str) -> Model:
     between = NodeReference(point)
     pieces = (
         piece(owner, (first, between), call.argument),
-        piece(f"{owner} beyond", (between, second), left),
+        piece(f"{owner} beyond", (between, second), remaining),
     )
     elements = tuple(p for u in model.elements for p in (pieces if u is use else (u,)))
     shown: Expression = Attribute(point, component) if domain in COMPONENTS else Name(point)
@@ -300,9 +300,9 @@ def joined_values(model: Model) -> list[list[Expression]]:
             if equal is None:
                 continue
             met = [g for g in groups if any(value in g for value in equal)]
-            whole = [value for group in met for value in group]
-            whole += [value for value in equal if value not in whole]
-            groups = [*(g for g in groups if g not in met), whole]
+            joined = [value for group in met for value in group]
+            joined += [value for value in equal if value not in joined]
+            groups = [*(g for g in groups if g not in met), joined]
     return groups
 
 

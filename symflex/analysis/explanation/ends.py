@@ -48,14 +48,14 @@ def _end(
 ) -> str:
     if reference.is_ground:
         return f"{'clamped' if is_planar else 'held'} at ground"
-    own = tuple(v for v in coordinates_of(model, use) if v.owner == reference.node)
+    coordinates = tuple(v for v in coordinates_of(model, use) if v.owner == reference.node)
     if is_planar:
-        *across, theta = (v in resting for v in own)
-        held = " and ".join(v.component for v in own if v in resting)
+        *across, theta = (v in resting for v in coordinates)
+        held = " and ".join(v.component for v in coordinates if v in resting)
         word = f"held in {held}" if any(across) != all(across) else BENDING[any(across), theta]
     else:
-        word = "held" if all(v in resting for v in own) else "free"
-    free = [v for v in own if v not in resting]
+        word = "held" if all(v in resting for v in coordinates) else "free"
+    free = [v for v in coordinates if v not in resting]
     carried = [
         other.name
         for other in model.elements
@@ -92,27 +92,27 @@ def ends_of_field(field: FieldProblem) -> str:
     at: dict[str, list[int]] = {format_expression(end): [] for end in (field.start, field.end)}
     for condition in field.conditions:
         call = _single(condition, field.unknowns[0])
-        place = None if call is None else format_expression(call.argument)
-        if call is None or place not in at:
+        position = None if call is None else format_expression(call.argument)
+        if call is None or position not in at:
             return ""
-        at[str(place)].append(call.order)
+        at[str(position)].append(call.order)
     words = [None if known is None else known.get(tuple(sorted(orders))) for orders in at.values()]
     if len(at) == 1 or any(word is None for word in words):
         return ""
-    return ", ".join(f"{word} at x = {place}" for word, place in zip(words, at, strict=True))
+    return ", ".join(f"{word} at x = {position}" for word, position in zip(words, at, strict=True))
 
 
 def _single(condition: Equation, unknown: str) -> Call | None:
     """Return the one value of the field in a condition that puts nothing but inputs beside it."""
     calls = [n for n in names(condition) if isinstance(n, Call)]
-    own = [c for c in calls if c.name == unknown]
+    matching = [c for c in calls if c.name == unknown]
     sides = (condition.left, condition.right)
-    if len(own) != 1 or len(calls) != 1:
+    if len(matching) != 1 or len(calls) != 1:
         return None
-    other = next(side for side in sides if own[0] not in names(side))
+    other = next(side for side in sides if matching[0] not in names(side))
     plain = is_number(other, 0)
     read = names(other)
-    return own[0] if plain or (len(read) == 1 and isinstance(read[0], Name)) else None
+    return matching[0] if plain or (len(read) == 1 and isinstance(read[0], Name)) else None
 
 
 @dataclass(frozen=True, slots=True)

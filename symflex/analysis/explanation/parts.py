@@ -115,17 +115,17 @@ class _Matrix:
 
     def components(self) -> Iterator[tuple[list[int], set[Variable]]]:
         """Yield rows and unknowns that hang together."""
-        left = dict(self.rows)
-        while left:
-            first = next(iter(left))
-            rows, variables = [first], set(left.pop(first))
+        remaining = dict(self.rows)
+        while remaining:
+            first = next(iter(remaining))
+            rows, variables = [first], set(remaining.pop(first))
             grown = True
             while grown:
-                joined = [i for i, row in left.items() if not variables.isdisjoint(row)]
+                joined = [i for i, row in remaining.items() if not variables.isdisjoint(row)]
                 grown = bool(joined)
                 for i in joined:
                     rows.append(i)
-                    variables |= set(left.pop(i))
+                    variables |= set(remaining.pop(i))
             yield sorted(rows), variables
 
 
@@ -229,25 +229,25 @@ class Relation:
 
 
 def relate(
-    whole: Determinants, pair: tuple[str, str], factor: Factored, constrained: Determinants
+    system: Determinants, pair: tuple[str, str], factor: Factored, constrained: Determinants
 ) -> Relation | None:
     """Return how a pair's numerator and a constrained determinant are related, ``None`` if they are not."""
-    equations = whole.equations
+    equations = system.equations
     if not same_generators(constrained.equations, equations):
         return None
-    num = opened(equations, whole.opened(whole.num(*pair)))
+    num = opened(equations, system.opened(system.num(*pair)))
     if num.is_zero:
         return None
-    own = opened(equations, factor)
+    opened_factor = opened(equations, factor)
     det = opened(equations, constrained.opened(constrained.den))
-    rest, _ = cancel(num / own, det)
-    above, below = (varying(equations, part) for part in (rest.numerator(), rest.denominator()))
-    order = own.exponent_of(equations.ring.generator(LAPLACE))
-    filtered = varying(equations, own / Factored.generator(equations.ring, LAPLACE) ** order)
-    bare, _ = cancel(num, own.numerator())
+    ratio, _ = cancel(num / opened_factor, det)
+    above, below = (varying(equations, part) for part in (ratio.numerator(), ratio.denominator()))
+    order = opened_factor.exponent_of(equations.ring.generator(LAPLACE))
+    filtered = varying(equations, opened_factor / Factored.generator(equations.ring, LAPLACE) ** order)
+    bare, _ = cancel(num, opened_factor.numerator())
     has_zeros = not varying(equations, bare.numerator()).is_constant
     decays = exponentials(equations)
-    is_delayed = any(f in decays for f, _ in rest.factors)
+    is_delayed = any(f in decays for f, _ in ratio.factors)
     return Relation(order, filtered, above, below, has_zeros, is_delayed)
 
 

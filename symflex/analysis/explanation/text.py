@@ -177,12 +177,12 @@ def explanation_text(explained: ZeroExplanation, width: int = WIDTH) -> str:
         lines.append("")
         for i, line in enumerate(paragraph):
             first = INDENT if i == 0 else 2 * INDENT
-            rest = INDENT if i == 0 else 3 * INDENT
+            indent = INDENT if i == 0 else 3 * INDENT
             lines += textwrap.wrap(
                 line,
                 width,
                 initial_indent=first,
-                subsequent_indent=rest,
+                subsequent_indent=indent,
                 break_long_words=False,
                 break_on_hyphens=False,
             )
@@ -244,13 +244,13 @@ def _proof(explained: ZeroExplanation) -> str:
         return "Not proved: the exact forms could not be compared."
     sure = explained.status == "proved"
     lead = "Proved" if sure else "Compared at random points, which errs with odds below 1 in 2^50"
-    own = _own(explained)
+    factor = _own(explained)
     more = f"*({explained.transmission})" if explained.transmission else ""
     more += f"/({explained.extra})" if explained.extra and explained.kind != "partly" else ""
-    whole = "those parts" if explained.kind == "partly" else "the constrained system"
-    said = [f"{lead}: num = c{own}{more}*det, where det belongs to {whole} and c does not depend on s."]
-    if own:
-        said.append(f"{own[1:]} is the factor that {explained.output} applies to what it measures.")
+    system = "those parts" if explained.kind == "partly" else "the constrained system"
+    said = [f"{lead}: num = c{factor}{more}*det, where det belongs to {system} and c does not depend on s."]
+    if factor:
+        said.append(f"{factor[1:]} is the factor that {explained.output} applies to what it measures.")
     if explained.extra:
         divisor = explained.extra if explained.extra != "..." else "What is divided by"
         said.append(f"{divisor} is the driven part's own.")

@@ -193,13 +193,13 @@ def _kind(case: _Case, relation: Relation, separation: Separation, factor: Facto
     for part in separation.parts:
         if part.has_input:
             driven = driven * part.determinant
-    rest, _ = cancel(relation.transmission * driven, relation.apart)
-    rest = varying(case.equations, rest)
-    if any(exponent < 0 for _, exponent in rest.factors):
+    remainder, _ = cancel(relation.transmission * driven, relation.apart)
+    remainder = varying(case.equations, remainder)
+    if any(exponent < 0 for _, exponent in remainder.factors):
         return "noncolocated", ""
-    if rest.is_constant:
+    if remainder.is_constant:
         return "beyond", ""
-    return ("partly", _text(case.equations, rest)) if undriven else ("noncolocated", "")
+    return ("partly", _text(case.equations, remainder)) if undriven else ("noncolocated", "")
 
 
 def _by_condition(case: _Case) -> ZeroExplanation | None:

@@ -67,14 +67,14 @@ def mode_shape(bound: AnyBoundFunction, which: int | Root, digits: int = DIGITS)
     >>> float(shape.motion("x").value.real.mid()), float(shape.motion("y").value.real.mid())
     (1.0, -0.5)
     """
-    shapes, place = _shapes(bound, which, digits)
+    shapes, index = _shapes(bound, which, digits)
     is_counted = isinstance(which, int) and which > 0 and len(shapes) <= shapes[0].pole.multiplicity
-    if is_counted and place < len(shapes):
-        return shapes[place]
+    if is_counted and index < len(shapes):
+        return shapes[index]
     if len(shapes) > 1 and not is_counted:
         message = f"the pole {_printed(shapes[0].pole)} has {len(shapes)} independent shapes"
         raise UsageError(Diagnostic("SF904", message, None, "mode_shapes() returns all of them"))
-    if place:
+    if index:
         message = f"mode {which} has no shape of its own: its pole has more modes than shapes"
         raise UsageError(Diagnostic("SF904", message))
     return shapes[0]
@@ -118,8 +118,8 @@ def _shapes(
     search = _ModeSearch(bound)
     if not isinstance(which, int):
         return search.shapes(partial(search.again, which), digits), 0
-    place = search.numbered(which, digits)[1]
-    return search.shapes(lambda more: search.numbered(which, more)[0], digits), place
+    index = search.numbered(which, digits)[1]
+    return search.shapes(lambda more: search.numbered(which, more)[0], digits), index
 
 
 class _ModeSearch:
@@ -268,9 +268,9 @@ def _tidied(
         mixing = square.inv()
     except ZeroDivisionError:
         return basis
-    whole = acb_mat([[basis[k][j] for k in range(count)] for j in range(len(unknowns))]) * mixing
+    mixed = acb_mat([[basis[k][j] for k in range(count)] for j in range(len(unknowns))]) * mixing
     return tuple(
-        tuple(acb(int(places[k] == j)) if j in places else whole[j, k] for j in range(len(unknowns)))
+        tuple(acb(int(places[k] == j)) if j in places else mixed[j, k] for j in range(len(unknowns)))
         for k in range(count)
     )
 
@@ -280,12 +280,12 @@ def _independent(basis: tuple[tuple[acb, ...], ...], places: Sequence[int]) -> l
     rows = {j: [complex(vector[j].mid()) for vector in basis] for j in places}
     chosen: list[int] = []
     while rows and len(chosen) < len(basis):
-        place = max(rows, key=lambda j: sum(abs(x) ** 2 for x in rows[j]))
-        pivot = rows.pop(place)
+        pivot_row = max(rows, key=lambda j: sum(abs(x) ** 2 for x in rows[j]))
+        pivot = rows.pop(pivot_row)
         size = sum(abs(x) ** 2 for x in pivot)
         if size == 0:
             break
-        chosen.append(place)
+        chosen.append(pivot_row)
         for j, row in rows.items():
             share = sum(x * y.conjugate() for x, y in zip(row, pivot, strict=True)) / size
             rows[j] = [x - share * y for x, y in zip(row, pivot, strict=True)]

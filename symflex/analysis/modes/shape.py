@@ -176,9 +176,9 @@ class DistributedShape:
         return propagator
 
     def _carried(self, step: Sequence[Sequence[acb]], state: tuple[acb, ...]) -> tuple[acb, ...]:
-        whole = (*state, *((acb(1),) if self.varying is None else self.load))[: len(step[0])]
+        extended = (*state, *((acb(1),) if self.varying is None else self.load))[: len(step[0])]
         rows = step[: len(state)]
-        return tuple(sum((a * z for a, z in zip(row, whole, strict=True)), acb(0)) for row in rows)
+        return tuple(sum((a * z for a, z in zip(row, extended, strict=True)), acb(0)) for row in rows)
 
     def _spectral_radius(self) -> float:
         """Return about the largest spatial exponent [1/m], from a high power of the matrix."""
@@ -333,28 +333,28 @@ def _along(part: DistributedShape) -> Iterator[_PlacedAmplitude]:
 
 def _largest(places: list[_PlacedAmplitude]) -> _PlacedAmplitude | None:
     largest: _PlacedAmplitude | None = None
-    for place in places:
-        if largest is None or place.size > largest.size * TIE:
-            largest = place
+    for amplitude in places:
+        if largest is None or amplitude.size > largest.size * TIE:
+            largest = amplitude
     return largest
 
 
-def _refined(place: _PlacedAmplitude) -> _PlacedAmplitude:
+def _refined(amplitude: _PlacedAmplitude) -> _PlacedAmplitude:
     """Return the place of the largest amplitude next to a sample, by golden section."""
-    part = place.part
-    if part is None or place.share in (0, 1):
-        return place
+    part = amplitude.part
+    if part is None or amplitude.share in (0, 1):
+        return amplitude
 
-    before = place.share - place.width
+    before = amplitude.share - amplitude.width
     start = part.state_at_share(before)
 
     def value(share: float | Fraction) -> acb:
-        return part.state_beyond(start, before, Fraction(share))[place.place]
+        return part.state_beyond(start, before, Fraction(share))[amplitude.place]
 
     def size(share: float) -> float:
         return float(abs(value(share).mid()))
 
-    low, high = float(place.share - place.width), float(place.share + place.width)
+    low, high = float(amplitude.share - amplitude.width), float(amplitude.share + amplitude.width)
     left, right = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
     at_left, at_right = size(left), size(right)
     for _ in range(SECTIONS):
@@ -367,7 +367,7 @@ def _refined(place: _PlacedAmplitude) -> _PlacedAmplitude:
             left = high - GOLDEN * (high - low)
             at_left = size(left)
     share = Fraction((low + high) / 2)
-    return replace(place, share=share, value=value(share))
+    return replace(amplitude, share=share, value=value(share))
 
 
 def _scaled(shape: Shape, reference: _PlacedAmplitude) -> Shape:

@@ -240,7 +240,7 @@ def modal_form(bound: AnyBoundFunction, kept: KeptRoots, digits: int) -> Approxi
     terms = [(part, power, c) for part in residues for power, c in enumerate(part.coefficients, 1)]
     with precision(BITS + BITS_PER_ROOT * len(roots)):
         correction = [start.coefficient(i) for i in range(kept.excess + 1)]
-        whole = acb_poly.from_roots(roots)
+        denominator = acb_poly.from_roots(roots)
         num = acb_poly([0])
         for residue, power, coefficient in terms:
             root = residue.root
@@ -251,14 +251,14 @@ def modal_form(bound: AnyBoundFunction, kept: KeptRoots, digits: int) -> Approxi
             others = acb_poly.from_roots(_repeated([r for r in kept.poles if r is not root]))
             num = num + others * acb_poly([-root.enclosure(), 1]) ** (root.multiplicity - power) * coefficient
         correction = [acb(about_zero(c.real)) for c in correction]
-        num = num + whole * acb_poly(correction)
+        num = num + denominator * acb_poly(correction)
         if start.order > 0:
             num = num - acb_poly([num.coeffs()[0].mid()])
         if kept.is_exact:
             above, below = exact_coefficients(bound)
             zeros = _repeated(kept.zeros)
         else:
-            above, below = _real_coefficients(num), _real_coefficients(whole)
+            above, below = _real_coefficients(num), _real_coefficients(denominator)
             exact = [exact_fraction(about_zero(c.real)) for c in num.coeffs()[: len(above)]]
             zeros = _repeated(find_polynomial_roots(RootProblem.from_rationals(exact), digits))
     evaluator = RationalEvaluator(

@@ -558,8 +558,8 @@ def _residue_rows(approximation: RationalApproximation) -> list[Row]:
             im = "0" if coefficient.imag.contains(0) else _decimal(value.imag)
             pair = ("+-", "-+" if im.startswith("-") else "+-") if pole.imag != 0 else ("", "")
             imaginary = im if im == "0" else pair[1] + im.removeprefix("-") if pair[1] else im
-            place = (_decimal(pole.real), pair[0] + _decimal(pole.imag)) if power == 1 else ("", "")
-            rows.append((*place, f"{-power}" if highest > 1 else "", re, imaginary))
+            location = (_decimal(pole.real), pair[0] + _decimal(pole.imag)) if power == 1 else ("", "")
+            rows.append((*location, f"{-power}" if highest > 1 else "", re, imaginary))
     return rows
 
 

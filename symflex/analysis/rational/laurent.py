@@ -483,6 +483,6 @@ def square_root(series: Value) -> Value:
     lead = coefficients[first].mid() if first % 2 == 0 else acb(0)
     if lead == 0:
         return acb_series([acb("nan")] * series.prec, series.prec)
-    rest = acb_series([c / lead for c in coefficients[first:]], series.prec - first).sqrt() * lead.sqrt()
+    regular = acb_series([c / lead for c in coefficients[first:]], series.prec - first).sqrt() * lead.sqrt()
     half = first // 2
-    return acb_series([*[acb(0)] * half, *rest.coeffs()], series.prec - half)
+    return acb_series([*[acb(0)] * half, *regular.coeffs()], series.prec - half)

@@ -258,8 +258,8 @@ def frequency_response_data(
         raise refused("omega must be an increasing array of finite numbers that are not negative [rad/s]")
     values = np.array([value(complex(0.0, w)) for w in grid.tolist()], dtype=np.complex128)
     if not np.isfinite(values).all():
-        place = float(grid[~np.isfinite(values)][0])
-        raise refused(f"{source.name} has a pole at omega = {place:g} rad/s", "leave this frequency out")
+        pole = float(grid[~np.isfinite(values)][0])
+        raise refused(f"{source.name} has a pole at omega = {pole:g} rad/s", "leave this frequency out")
     names = {"inputs": [source.input.name], "outputs": [source.output.name]}
     data = control.FrequencyResponseData(values, grid, name=label, **names)
     data.metadata = metadata

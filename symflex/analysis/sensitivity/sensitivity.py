@@ -153,12 +153,12 @@ class RootDerivative:
 
     def to_json_dict(self, digits: int) -> dict[str, object]:
         """Return the sensitivity as JSON data, with at most so many digits in each number."""
-        place = decimals(self.root.re, self.root.im, digits)
+        decimal = decimals(self.root.re, self.root.im, digits)
         return {
             "of": self.kind,
             "index": self.index,
-            "re": place.re,
-            "im": place.im,
+            "re": decimal.re,
+            "im": decimal.im,
             "parameter": self.parameter.name,
             "unit": self.parameter.unit,
             "status": self.status,
@@ -202,9 +202,9 @@ def differentiate(
         for i, root in enumerate(roots):
             for parameter in used:
                 spend()
-                status, place, derivative = side.moved(root, parameter.name)
+                status, location, derivative = side.moved(root, parameter.name)
                 value = values[parameter.name]
-                moved.append(RootDerivative(kind, i, root, parameter, value, status, place, derivative))
+                moved.append(RootDerivative(kind, i, root, parameter, value, status, location, derivative))
     return tuple(moved)
 
 
@@ -225,8 +225,8 @@ class _Side:
         if root.im < 0:
             with precision(root.working_bits()):
                 upper = replace(root, im=-root.im)
-            status, place, derivative = self.moved(upper, parameter)
-            return status, _conjugate(place), None if derivative is None else _conjugate(derivative)
+            status, location, derivative = self.moved(upper, parameter)
+            return status, _conjugate(location), None if derivative is None else _conjugate(derivative)
         if root.is_zero and self._is_fixed_at_zero(root):
             return "certified", acb(0), acb(0)
         key = (exact_fraction(root.re), exact_fraction(root.im))
@@ -304,15 +304,15 @@ class RootBranch:
 
 def find_branch(tangents: Tangents, part: Factored, root: Root) -> RootBranch | Obstacle:
     """Return the factor that alone is zero at a root, and simply; else why there is none."""
-    place, first = root.enclosure(), root.working_bits()
+    location, first = root.enclosure(), root.working_bits()
     for bits in precisions(first, MOST_TIMES * first):
-        meeting = _meeting(tangents, [f for f, _ in part.factors], place, bits)
+        meeting = _meeting(tangents, [f for f, _ in part.factors], location, bits)
         if meeting is not None and len(meeting) == 1 and root.multiplicity > 1:
             # Twice the same factor, multiplied out: such a root stays double, and moves.
             _, square_free = square_free_factors(meeting[0])
-            meeting = _meeting(tangents, [f for f, _ in square_free], place, bits)
-        if meeting is not None and len(meeting) == 1 and _is_simple(tangents, meeting[0], place, bits):
-            return RootBranch(tangents, meeting[0], place)
+            meeting = _meeting(tangents, [f for f, _ in square_free], location, bits)
+        if meeting is not None and len(meeting) == 1 and _is_simple(tangents, meeting[0], location, bits):
+            return RootBranch(tangents, meeting[0], location)
         if meeting == []:
             return "undecided"
     return "multiple" if root.multiplicity > 1 and root.certified else "undecided"
@@ -344,8 +344,8 @@ def sensitivities(
     given = dict(bound.values)
     values = {p.name: given.get(p.name, p.value) for p in model.parameters}
     real = {name: value for name, value in values.items() if value is not None}
-    left = [p.name for p in model.settable if not p.is_solved_with]
-    chosen = [p for p in model.settable if p.name in real and p.name in (names or left)]
+    settable = [p.name for p in model.settable if not p.is_solved_with]
+    chosen = [p for p in model.settable if p.name in real and p.name in (names or settable)]
     pair = (bound.source.output.name, bound.source.input.name)
     if (
         not bound.is_reduced
@@ -385,25 +385,25 @@ def _of_equations(
             status: Status = "certified"
             slopes: dict[str, acb | None]
             if root.is_zero and is_fixed_at_zero(at, pair, root, is_pole=kind == "pole"):
-                place, slopes = acb(0), dict.fromkeys(names, acb(0))
+                location, slopes = acb(0), dict.fromkeys(names, acb(0))
             elif root.multiplicity > 1:
                 # Whether it parts is not read off the equations.
-                status, place, slopes = "undecided", root.enclosure(), {}
+                status, location, slopes = "undecided", root.enclosure(), {}
             elif (
                 root.im < 0
                 and is_real
                 and upper is not None
                 and upper[0].conjugate().overlaps(root.enclosure())
             ):
-                place = _conjugate(upper[0])
+                location = _conjugate(upper[0])
                 slopes = {n: x if x is None else _conjugate(x) for n, x in upper[1].items()}
             else:
-                place, slopes = upper = derivatives(matrix, root, names, digits)
+                location, slopes = upper = derivatives(matrix, root, names, digits)
             for parameter in parameters:
                 slope = slopes.get(parameter.name)
                 said: Status = "undecided" if status == "certified" and slope is None else status
                 moved.append(
-                    RootDerivative(kind, i, root, parameter, values[parameter.name], said, place, slope)
+                    RootDerivative(kind, i, root, parameter, values[parameter.name], said, location, slope)
                 )
     return tuple(moved)
 
@@ -450,21 +450,21 @@ class Tangents:
         if direction == LAPLACE:
             minors = self._varying.minors.entries
             places = [minors[self.tf.ratio.ring.index[k.generator]] for k in kernels]
-            values = (self._varying.value(place, s) for place in places)
+            values = (self._varying.value(position, s) for position in places)
             return {k.generator: _lifted(x) for k, x in zip(kernels, values, strict=True)}
         n, entries = law.order, dict[str, Value]()
-        own, start = self._tangent_law(law, direction), self.product(law.start[0], point)
+        tangent, start = self._tangent_law(law, direction), self.product(law.start[0], point)
         matrices: dict[Factored, tuple[list[list[acb]], acb_mat]] = {}
         for kernel in kernels:
             if kernel.length not in matrices:
                 end = start + self.product(kernel.length, point)
-                matrix = own.matrix_at(s[0], (start[0].real, end[0].real))
+                matrix = tangent.matrix_at(s[0], (start[0].real, end[0].real))
                 slopes = acb_mat([row[:n] for row in matrix[n:]])
-                whole = acb_mat([row[:n] for row in matrix[:n]])
+                fundamental = acb_mat([row[:n] for row in matrix[:n]])
                 rate = end[1] if law.singular is None else end[1] - start[1]
-                slopes += _coefficients(own, n, end[0], s[0]) * rate * whole
+                slopes += _coefficients(tangent, n, end[0], s[0]) * rate * fundamental
                 if law.singular is None:
-                    slopes -= whole * _coefficients(own, n, start[0], s[0]) * start[1]
+                    slopes -= fundamental * _coefficients(tangent, n, start[0], s[0]) * start[1]
                 matrices[kernel.length] = matrix, slopes
             matrix, slopes = matrices[kernel.length]
             row, column = divmod(kernel.order, n)

@@ -56,9 +56,9 @@ def _table(moved: Sequence[RootDerivative], width: int) -> list[str]:
         mirrored = im != "0" and (re, im[1:] if im[0] == "-" else f"-{im}") in places
         if mirrored and im.startswith("-"):
             continue
-        place = (re, f"+-{im}" if mirrored else im)
+        location = (re, f"+-{im}" if mirrored else im)
         for n, cells in enumerate(_rows(roots[index], list(group))):
-            rows.append((*(place if n == 0 else ("", "")), *cells))
+            rows.append((*(location if n == 0 else ("", "")), *cells))
     numbers = [row for row in rows if len(row) == len(rows[0])]
     columns = [max(len(row[i]) for row in numbers) for i in range(len(rows[0]))]
     places_width = [max(len(row[i]) for row in rows) for i in (0, 1)]
@@ -69,10 +69,10 @@ def _table(moved: Sequence[RootDerivative], width: int) -> list[str]:
 
 
 def _laid_out(row: Sequence[str], columns: Sequence[int]) -> list[str]:
-    re, im, name, *rest = row
+    re, im, name, *cells = row
     start = f"{INDENT}{re.rjust(columns[0])}  {im.rjust(columns[1])}  "
-    end = "  ".join(text.rjust(w) for text, w in zip(rest, columns[3:], strict=False))
-    if not rest:
+    end = "  ".join(text.rjust(w) for text, w in zip(cells, columns[3:], strict=False))
+    if not cells:
         return [start + name]
     if len(name) <= columns[2]:
         return [f"{start}{name.ljust(columns[2])}  {end}".rstrip()]

@@ -204,7 +204,7 @@ class DelayReader:
             return None
         by_delay: dict[Delay, Amplitude] = {}
         for exponent, amplitude in terms.terms.items():
-            own = by_delay.setdefault(self.delay_of(exponent), {})
+            terms_then = by_delay.setdefault(self.delay_of(exponent), {})
             for monomial, (number, _) in amplitude.items():
                 exponents = [0] * (1 + len(self.durations.names))
                 for x, a, _ in exponent:
@@ -215,8 +215,8 @@ class DelayReader:
                         exponents[0] += e
                     if i:
                         exponents[self.places[i]] += e
-                _add(own, tuple(exponents), Fraction(number, 2**terms.halvings))
-        return {delay: own for delay, own in by_delay.items() if own}
+                _add(terms_then, tuple(exponents), Fraction(number, 2**terms.halvings))
+        return {delay: terms_then for delay, terms_then in by_delay.items() if terms_then}
 
 
 def _squared_slowness(law: Dispersion) -> Factored | None:
@@ -249,9 +249,9 @@ def polynomial_in_s(value: Factored, degree: int) -> list[Factored] | None:
     moving = [(f, e) for f, e in value.factors if degree_in(f, 0)]
     if sum(degree_in(f, 0) * e for f, e in moving) != degree or any(e < 0 for _, e in moving):
         return None
-    rest = Factored(ring, value.unit, tuple(own for own in value.factors if own not in moving))
-    whole = prod((f**e for f, e in moving), start=ring.constant(1))
-    return [rest * Factored.polynomial(ring, c) for c in ring.coefficients(whole)]
+    constant = Factored(ring, value.unit, tuple(power for power in value.factors if power not in moving))
+    polynomial = prod((f**e for f, e in moving), start=ring.constant(1))
+    return [constant * Factored.polynomial(ring, c) for c in ring.coefficients(polynomial)]
 
 
 def _ratio(square: Fraction | None, other: Fraction | None) -> Fraction | None:
@@ -284,11 +284,11 @@ def _product(a: Mapping[Delay, Amplitude], b: Mapping[Delay, Amplitude]) -> dict
     product: dict[Delay, Amplitude] = {}
     for first, one in a.items():
         for second, other in b.items():
-            own = product.setdefault(sum_of(first, second), {})
+            summands = product.setdefault(sum_of(first, second), {})
             for m, x in one.items():
                 for n, y in other.items():
-                    _add(own, tuple(i + k for i, k in zip(m, n, strict=True)), x * y)
-    return {delay: own for delay, own in product.items() if own}
+                    _add(summands, tuple(i + k for i, k in zip(m, n, strict=True)), x * y)
+    return {delay: summands for delay, summands in product.items() if summands}
 
 
 def later(delay: Delay, other: Delay) -> Delay:

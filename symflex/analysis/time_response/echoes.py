@@ -70,8 +70,8 @@ def echoes(quotient: DelayedQuotient, last: arb) -> list[Echo]:
         numerator = sum((p * leading ** (power - m) for p, m in parts), arb_poly([0]))
         return None if numerator.degree() < 0 else (numerator, power)
 
-    def followed(own: tuple[arb_poly, int], p: arb_poly) -> tuple[arb_poly, int]:
-        return -(own[0] * p), own[1] + 1
+    def followed(echo: tuple[arb_poly, int], p: arb_poly) -> tuple[arb_poly, int]:
+        return -(echo[0] * p), echo[1] + 1
 
     begun = {
         later(delay, first): (quotient.durations.polynomial(p), 1) for delay, p in quotient.above.items()
@@ -138,16 +138,16 @@ def arriving(
     while queue:
         spend()
         _, delay = heapq.heappop(queue)
-        whole = joined(waiting.pop(delay))
-        if whole is None:
+        total = joined(waiting.pop(delay))
+        if total is None:
             continue
         count += 1
         if count > EFFORT.echoes:
             raise TooManyEchoesError
-        yield delay, whole
+        yield delay, total
         for more, factor in below.items():
             if waited_for(again := sum_of(delay, more)):
-                waiting[again].append(followed(whole, factor))
+                waiting[again].append(followed(total, factor))
 
 
 def earliest(below: Iterable[Delay], durations: Durations) -> Delay:

@@ -130,8 +130,8 @@ class EnclosedResponse:
         """The rms difference between measured output and values, in words; empty if nothing was measured."""
         if self.measured is None:
             return ""
-        name, own = self.measured
-        off, size = (float(np.sqrt(np.mean(np.square(x)))) for x in (own - self.values, own))
+        name, record = self.measured
+        off, size = (float(np.sqrt(np.mean(np.square(x)))) for x in (record - self.values, record))
         return f"measured {name} less the model: rms {off:.4g}, where {name} has {size:.4g}"
 
     @property
@@ -169,8 +169,8 @@ class EnclosedResponse:
         document |= {"initial": self.initial} if self.initial else {}
         if self.measured is not None:
             off = float(np.sqrt(np.mean(np.square(self.measured[1] - self.values))))
-            own = {"output": self.measured[0], "value": self.measured[1].tolist()}
-            document["measured"] = {**own, "rms_difference": off}
+            record = {"output": self.measured[0], "value": self.measured[1].tolist()}
+            document["measured"] = {**record, "rms_difference": off}
         return document if self.reason is None else {**document, "reason": self.reason}
 
     def to_csv(self) -> str:

@@ -34,8 +34,8 @@ def estimated(bound: AnyBoundFunction, integrations: int, times: SampleTimes) ->
     few, many = EFFORT.few_estimated, EFFORT.estimated_modes
     count = many if bound.is_reduced else few
     modal_sum = _summed(bound, integrations, times, count)
-    left = sorted(modal_sum.at_times or (modal_sum.rest,), key=arb.mid)
-    typical = left[len(left) // 2]
+    errors = sorted(modal_sum.at_times or (modal_sum.rest,), key=arb.mid)
+    typical = errors[len(errors) // 2]
     if count == few and EFFORT.little * modal_sum.largest <= typical < EFFORT.hopeless * modal_sum.largest:
         modal_sum, count = _summed(bound, integrations, times, many), many
     told = sum(bool(y.rad() < EFFORT.too_much * modal_sum.largest) for y in modal_sum.sampled.values)
@@ -62,7 +62,7 @@ def _summed(bound: AnyBoundFunction, integrations: int, times: SampleTimes, coun
         terms += [term for _, around in rings for term in around]
         upper += [term.rate.real for _, around in rings for term in around]
         values = values_of([*origin, *terms], times)
-        rest = arb(_estimated_rest(sizes))
+        tail = arb(_estimated_rest(sizes))
         at_times: tuple[arb, ...] = ()
         if terms:
             # At t = 0 it is known what all modes add up to. A taper so far beyond its modes takes gigabytes.
@@ -71,14 +71,14 @@ def _summed(bound: AnyBoundFunction, integrations: int, times: SampleTimes, coun
             small = EFFORT.begun_closely * max(sizes, default=0.0)
             begun, sooner = (_begun(bound, integrations, s.mid(), small) for s in (far, far / 2))
             at_once = sum((term.coefficients[0] for term in (*origin, *terms)), acb(0)).real
-            rest += EFFORT.surer * abs(at_once - begun)
+            tail += EFFORT.surer * abs(at_once - begun)
             slowest = max(upper, key=arb.mid).min(0)
-            at_times = tuple(rest * (slowest * t).exp() for t in times.enclosed())
+            at_times = tuple(tail * (slowest * t).exp() for t in times.enclosed())
             if times.seconds[0] == 0 and slowest < 0 and abs(begun) <= abs(sooner):
                 # What fades begins smoothly: only at t = 0 itself do the modes not say more.
                 values[0] = begun + arb(0, EFFORT.surer * abs(begun - sooner).upper())
                 at_times = (arb(0), *at_times[1:])
-        return PartialSum((*origin, *terms), tuple(values), rest, at_times, method="estimated modes")
+        return PartialSum((*origin, *terms), tuple(values), tail, at_times, method="estimated modes")
 
 
 def _parts(

@@ -152,12 +152,12 @@ def _shaped(
     if accuracy < bits_for_digits(inner):
         message = f"the shaper has {shaper.digits} digits, too few for a response with {digits}"
         raise refused(message, "make a shaper with more digits")
-    whole = time_response(bound, kind, times, inner)
+    unshaped = time_response(bound, kind, times, inner)
     (_, first), *others = shaper.impulses  # the first stands at 0
     with precision(shaper.bits):
-        total = [y * first for y in whole.enclosures]
-        impulses = [ImpulseAt(i.time, i.order, first * i.weight) for i in whole.impulses]
-        jumps = [JumpAt(j.time, first * j.height) for j in whole.jumps]
+        total = [y * first for y in unshaped.enclosures]
+        impulses = [ImpulseAt(i.time, i.order, first * i.weight) for i in unshaped.impulses]
+        jumps = [JumpAt(j.time, first * j.height) for j in unshaped.jumps]
         seconds = times.enclosed()
         last = seconds[-1] if seconds else arb(0)
     begun = time_response(bound, kind, SampleTimes.of([0.0, float(last.mid()) or 1.0]), inner).enclosures[0]
@@ -172,10 +172,10 @@ def _shaped(
                 total[i] = total[i] + amplitude * here
             if not begun.contains(0):
                 jumps.append(JumpAt(moment, amplitude * begun))
-            impulses += [ImpulseAt(moment + i.time, i.order, amplitude * i.weight) for i in whole.impulses]
-            jumps += [JumpAt(moment + j.time, amplitude * j.height) for j in whole.jumps]
+            impulses += [ImpulseAt(moment + i.time, i.order, amplitude * i.weight) for i in unshaped.impulses]
+            jumps += [JumpAt(moment + j.time, amplitude * j.height) for j in unshaped.jumps]
     return replace(
-        whole,
+        unshaped,
         enclosures=tuple(total),
         impulses=tuple(sorted((i for i in impulses if not i.time > last), key=lambda i: i.time.mid())),
         jumps=tuple(sorted((j for j in jumps if not j.time > last), key=lambda j: j.time.mid())),
@@ -257,7 +257,7 @@ def _by_delays(asked: Asked) -> Plan | Refused:
     if asked.bound.sheets == 1 and len(delays) < len(kernels):
         return Refused("what is delayed changes its form")
     parts = _taken_apart(asked.bound, delays)
-    return partial(_later, asked, parts) if any(own for own, _ in parts) else Refused()
+    return partial(_later, asked, parts) if any(delay for delay, _ in parts) else Refused()
 
 
 def _is_delay(kernel: Kernel, sheets: int) -> bool:
@@ -328,7 +328,7 @@ def _taken_apart(
         raise too_early()
     plain, mixed = Factored(ring, bound.num.unit), ring.constant(1)
     for factor, exponent in bound.num.factors:
-        if exponent > 0 and any(degree_in(factor, place) for place in delays):
+        if exponent > 0 and any(degree_in(factor, index) for index in delays):
             mixed = mixed * factor**exponent
         else:
             plain = plain * Factored.polynomial(ring, factor) ** exponent
@@ -379,8 +379,8 @@ def _later(asked: Asked, parts: list[tuple[Delays, BoundTransferFunction]]) -> S
             sampled = _answer(replace(asked, bound=part, times=later))
             reason, refused = reason or sampled.reason, refused or sampled.refused
             with precision(bits):
-                own = [gain * y for y in sampled.values[: len(asked.times) - start]]
-                total.add(wait, (), arb(0), own, is_late=bool(wait > 0))
+                delayed = [gain * y for y in sampled.values[: len(asked.times) - start]]
+                total.add(wait, (), arb(0), delayed, is_late=bool(wait > 0))
     return replace(total.sampled(sampled.method), reason=reason, refused=refused)
 
 

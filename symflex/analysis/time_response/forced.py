@@ -111,18 +111,22 @@ def forced_response(
     impulses: list[ImpulseAt] = []
     jumps: list[JumpAt] = []
     with precision(BITS):
-        for kind, own in unit.items():
+        for kind, unit_response in unit.items():
             sizes = [ball(parts[kind].get(i, Fraction(0))) for i in range(max(parts[kind]) + 1)]
-            summed = (arb_poly(sizes) * arb_poly(list(own.enclosures))).coeffs()
+            summed = (arb_poly(sizes) * arb_poly(list(unit_response.enclosures))).coeffs()
             total = [a + b for a, b in zip_longest(total, summed[:count], fillvalue=arb(0))]
-            for place, size in parts[kind].items():
-                at, factor = ball(first + place * step), ball(size)
-                impulses += [ImpulseAt(i.time + at, i.order, i.weight * factor) for i in own.impulses]
-                at_once = [JumpAt(arb(0), own.enclosures[0])] if place and kind == "step" else []
-                fronts = [j for j in (*at_once, *own.jumps) if not j.height.contains(0)]
+            for index, size in parts[kind].items():
+                at, factor = ball(first + index * step), ball(size)
+                impulses += [
+                    ImpulseAt(i.time + at, i.order, i.weight * factor) for i in unit_response.impulses
+                ]
+                at_once = [JumpAt(arb(0), unit_response.enclosures[0])] if index and kind == "step" else []
+                fronts = [j for j in (*at_once, *unit_response.jumps) if not j.height.contains(0)]
                 jumps += [JumpAt(j.time + at, j.height * factor) for j in fronts]
         response = tuple(total[i] if i >= 0 else arb(0) for i in moments)
-    reason = next((own.reason for own in unit.values() if own.reason is not None), None)
+    reason = next(
+        (unit_response.reason for unit_response in unit.values() if unit_response.reason is not None), None
+    )
     seconds, jumps = np.array([float(t) for t in times]), sorted(jumps, key=lambda j: j.time.mid())
     forced = replace(next(iter(unit.values())), input=FORCED, times=seconds, enclosures=response, modes=None)
     forced = replace(forced, impulses=tuple(impulses), jumps=tuple(jumps), digits=digits)

@@ -71,20 +71,20 @@ class SizeOfExponentials:
     def at(self, s: acb, sharp: float = 1.0) -> arb | None:
         """Return the most that abs(H) is on a ball, by exponentials."""
         spend()
-        place = self.values.at(s)
+        exponents = self.values.at(s)
         total = abs(acb(ball(self.bound.ratio.unit)))
         grown: dict[int, complex] = {}
         for i, (terms, exponent) in enumerate(self.values.sums):
             only = next(iter(terms.terms), REAL)
-            largest = only if len(terms.terms) == 1 else self.values.largest([i], place)
-            value = at_centre(self.values.value(i, place, largest))
+            largest = only if len(terms.terms) == 1 else self.values.largest([i], exponents)
+            value = at_centre(self.values.value(i, exponents, largest))
             if not value.is_finite():
                 return None
             scale = abs(value.mid())
             if exponent > 0:
                 # A numerator may vanish on the way.
-                own = self.values.amplitudes(i, place)[list(terms.terms).index(largest)]
-                scale = scale.max(abs(at_centre(own).mid()))
+                amplitude = self.values.amplitudes(i, exponents)[list(terms.terms).index(largest)]
+                scale = scale.max(abs(at_centre(amplitude).mid()))
             if not value.rad() <= sharp * scale or (exponent < 0 and not abs(value) > 0):
                 value = self._expanded(i, s, largest)
                 scale = scale if exponent > 0 else abs(value.mid())
@@ -95,8 +95,8 @@ class SizeOfExponentials:
             for k, real, imaginary in largest:
                 grown[k] = grown.get(k, 0j) + exponent * complex(real, imaginary)
         # Added up first: the balls of what grows above and below would not cancel.
-        rest = place.combined(tuple((k, acb(c.real, c.imag)) for k, c in grown.items() if c))
-        bound = total if rest is None else total * at_centre(rest).real.exp()
+        growing = exponents.combined(tuple((k, acb(c.real, c.imag)) for k, c in grown.items() if c))
+        bound = total if growing is None else total * at_centre(growing).real.exp()
         return bound.upper() if bound.is_finite() else None
 
     def on_arc(self, reached: float, start: float, end: float) -> arb | None:
@@ -148,7 +148,7 @@ class SizeOfExponentials:
         middle, last = s.mid(), EFFORT.series_terms - 1
         near = self.values.at(acb_series([s, acb(1)], EFFORT.series_terms))
         at_middle = self.values.at(acb_series([middle, acb(1)], EFFORT.series_terms), near)
-        wide, sharp = (self.values.value(number, place, largest) for place in (near, at_middle))
+        wide, sharp = (self.values.value(number, disc, largest) for disc in (near, at_middle))
         if not (isinstance(wide, acb_series) and isinstance(sharp, acb_series)):
             return at_centre(wide)
         total = wide[last]

@@ -68,12 +68,12 @@ def free_motion(model: Model, pair: tuple[str, str], initial: Mapping[str, str])
     system = realise(replace(model, outputs=(*model.outputs, *shown)), pairs)
     begins: dict[int, str] = {}
     for name, row, size in zip(initial, system.c[1:], sizes, strict=True):
-        (place, share), *others = row.items() or [(-1, None)]
-        if others or share is None or place in begins:
+        (column, share), *others = row.items() or [(-1, None)]
+        if others or share is None or column in begins:
             states = ", ".join(format_expression(state.terms[0][0]) for state in system.states)
             message = f"'{name}' is not a state, nor a multiple of one that has no other value"
             raise refused(message, f"give values of {states}")
-        begins[place] = f"{size}/({_text(system, share)})"
+        begins[column] = f"{size}/({_text(system, share)})"
     return derive_bound(load_with(Source("initial values", _spec(system, begins)), {}), [("y", "u")])[0]
 
 

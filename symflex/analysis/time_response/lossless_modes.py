@@ -109,12 +109,12 @@ class AxisFactor:
             # exp(j k (theta + j y)) and its inverse, both over exp(turns y).
             fading, grown = turned * v ** (self.turns + k), v ** (self.turns - k) / turned
             sine = (fading - grown) / acb(0, 2 if multiple >= 0 else -2)
-            own = self._disc(wave.even, least) * (fading + grown) / 2 + self._disc(wave.odd, least) * sine
+            bound = self._disc(wave.even, least) * (fading + grown) / 2 + self._disc(wave.odd, least) * sine
             if any(wave.growth):
                 rate, _ = self.function.enclosures.rate(wave.growth)
-                size = ((rate * least).exp() * own.abs_upper()).upper()
-                own = acb(arb(0, size), arb(0, size))
-            total += own
+                size = ((rate * least).exp() * bound.abs_upper()).upper()
+                bound = acb(arb(0, size), arb(0, size))
+            total += bound
         return total
 
     def _disc(self, polynomial: Polynomial, least: arb) -> acb:
@@ -202,8 +202,8 @@ class LosslessModes(ModesBound):
             turn = 2 * arb.pi() / self.rate
             # One turn may begin and end in the middle of a place.
             total = least**power + least ** (power + 1) / (turn * (-power - 1))
-            left = (size / arb(2) ** integrations * total).upper()
-            return Rest(left, (left,) * len(times))
+            tail = (size / arb(2) ** integrations * total).upper()
+            return Rest(tail, (tail,) * len(times))
 
     def _size_beyond(self, least: arb) -> arb | None:
         """Return how large all residues in a turn are together over a power of t, for all t beyond one."""
@@ -259,9 +259,9 @@ def lossless_modes(bound: BoundTransferFunction, integrations: int) -> tuple[Los
 
 
 def _modes_of(bound: BoundTransferFunction) -> LosslessModes | Refused:
-    whole = _multiplied(bound)
-    function = None if whole is None else KernelFunction(bound, whole)
-    if whole is None or function is None or function.power != 1 or not (function.part / whole).is_one:
+    product = _multiplied(bound)
+    function = None if product is None else KernelFunction(bound, product)
+    if product is None or function is None or function.power != 1 or not (function.part / product).is_one:
         return Refused("poles may be multiple")
     lossless = lossless_function(function, BITS)
     if lossless is None:
@@ -289,10 +289,10 @@ def _multiplied(bound: BoundTransferFunction) -> Factored | None:
     """Return the function with one factor for all kernels above and one below, real on the axis, or None."""
     ring = bound.ratio.ring
     above, below = ring.constant(1), ring.constant(1)
-    rest = []
+    others = []
     for factor, exponent in bound.ratio.factors:
         if not any(degree_in(factor, ring.index[k.generator]) for k in bound.kernels.kernels):
-            rest.append((factor, exponent))
+            others.append((factor, exponent))
         elif exponent > 0:
             above = above * factor**exponent
         elif exponent == -1:
@@ -300,5 +300,5 @@ def _multiplied(bound: BoundTransferFunction) -> Factored | None:
         else:
             return None
     together = ((above, 1), (below, -1))
-    rest += [(f, e) for f, e in together if not f.is_constant()]
-    return Factored(ring, bound.ratio.unit, tuple(rest))
+    others += [(f, e) for f, e in together if not f.is_constant()]
+    return Factored(ring, bound.ratio.unit, tuple(others))

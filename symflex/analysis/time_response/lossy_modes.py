@@ -83,13 +83,13 @@ class LossyBound(BoundBySize):
                 start = limit.lead.real if limit is not None and limit.power == size.power else None
             tails = []
             for t in times.enclosed():
-                own = always
+                bound = always
                 if is_tilted and t > 0:
                     turned = SLOPE * radius * t
-                    own = (-turned).exp() * own.min(arc + ray / turned)
-                if not own.is_finite() and not (t == 0 and start is not None):
+                    bound = (-turned).exp() * bound.min(arc + ray / turned)
+                if not bound.is_finite() and not (t == 0 and start is not None):
                     return None
-                tails.append(own.upper())
+                tails.append(bound.upper())
             fade = SLOPE * radius if is_tilted else ZERO
             return Rest(always, tuple(tails), start, fade)
 

@@ -138,8 +138,8 @@ class BoundedModes:
         if reached in self._known:
             return self._known[reached]
         origin = proved_at_origin(self._bound, self._integrations)
-        rest = self._bounding.rest(reached, self._integrations, self._times) if reached >= least else None
-        if origin is None or rest is None:
+        tail = self._bounding.rest(reached, self._integrations, self._times) if reached >= least else None
+        if origin is None or tail is None:
             return None
         with precision(BITS):
             radius = arb(reached).exp()
@@ -160,15 +160,15 @@ class BoundedModes:
                     return None
                 terms.append(term)
             values = values_of(terms, self._times)
-            left = [own + missing for own in rest.at_times]
-            if rest.start is not None and self._times.seconds[0] == 0:
-                values[0], left[0] = rest.start, arb(0)
+            bounds = [bound + missing for bound in tail.at_times]
+            if tail.start is not None and self._times.seconds[0] == 0:
+                values[0], bounds[0] = tail.start, arb(0)
             total = PartialSum(
                 tuple(terms),
                 tuple(values),
-                (rest.always + missing).upper(),
-                tuple(own.upper() for own in left),
-                min((rest.fade, *(ring.fade for ring in rings)), key=arb.mid).lower(),
+                (tail.always + missing).upper(),
+                tuple(bound.upper() for bound in bounds),
+                min((tail.fade, *(ring.fade for ring in rings)), key=arb.mid).lower(),
                 self._bounding.name,
             )
             return self._known.setdefault(reached, total)
@@ -222,12 +222,12 @@ class BoundedModes:
             added = self._added
             places = [_root_of(root) for root in [*chain, *added][-len(CONTINUATION) :]]
             while len(chain) + len(added) <= count:
-                place = sum(c * z for c, z in zip(CONTINUATION, places, strict=True))
-                proved = prove_simple(side.function, acb(place**2), EFFORT.pole_digits)
+                guess = sum(c * z for c, z in zip(CONTINUATION, places, strict=True))
+                proved = prove_simple(side.function, acb(guess**2), EFFORT.pole_digits)
                 if proved is None or not proved.certified:
                     return None
                 places = [*places[1:], _root_of(proved)]
-                if not abs(places[-1] - place) < EFFORT.next_to * abs(places[-1] - places[-2]):
+                if not abs(places[-1] - guess) < EFFORT.next_to * abs(places[-1] - places[-2]):
                     return None
                 added.append(proved)
             ends = [float(root.natural_frequency().log().mid()) for root in added[-2:]]

@@ -170,8 +170,8 @@ def _colocated(
     given = replace(model, inputs=(*model.inputs, *forces), outputs=tuple(shown), figures=(), published=())
     pairs = [(o.name, i.name) for o in shown for i in forces]
     # A model of which some numbers are written into the wavenumbers has no longer all parameters.
-    left = {p.name for p in given.parameters}
-    values = {name: value for name, value in bound.values if name in left}
+    remaining = {p.name for p in given.parameters}
+    values = {name: value for name, value in bound.values if name in remaining}
     derived = [bind(tf, values) for tf in derive_all(given, pairs)]
     return [derived[0], derived[-1]] if (derived[1].ratio / derived[2].ratio).is_one else []
 
@@ -179,6 +179,6 @@ def _colocated(
 def force_on(model: Model, variable: Variable) -> str | None:
     """Return the kind of input that does work on a coordinate; None for a voltage or a pressure."""
     domain = next(n.domain for n in model.nodes if n.name == variable.owner)
-    own = COMPONENT_DOMAIN.get(variable.component, domain)
-    kinds = (k for k, kind in INPUT_KINDS.items() if kind.domain == own and not kind.is_imposed)
-    return None if own in CIRCUITS else next(kinds, None)
+    component_domain = COMPONENT_DOMAIN.get(variable.component, domain)
+    kinds = (k for k, kind in INPUT_KINDS.items() if kind.domain == component_domain and not kind.is_imposed)
+    return None if component_domain in CIRCUITS else next(kinds, None)

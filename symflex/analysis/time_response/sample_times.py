@@ -112,16 +112,16 @@ class SampleTimes:
         """
         every = self.enclosed()
         start = next((i for i, t in enumerate(every) if not t < moment), len(every))
-        left = self.seconds[start:]
-        if left.size == 1:
-            off = arb(float(left[0])) - every[start]
-            return start, SampleTimes(np.array([1.0, 2.0]) * left[0], None, origin=moment + off)
-        if self.step is None or not left.size:
-            return start, SampleTimes(left, None, origin=moment)
+        remaining = self.seconds[start:]
+        if remaining.size == 1:
+            off = arb(float(remaining[0])) - every[start]
+            return start, SampleTimes(np.array([1.0, 2.0]) * remaining[0], None, origin=moment + off)
+        if self.step is None or not remaining.size:
+            return start, SampleTimes(remaining, None, origin=moment)
         if self.slack:
-            return start, SampleTimes(left, self.step, 2 * self.slack, moment)
-        off = arb(float(left[0])) - arb(float(self.seconds[0])) - ball(self.step) * start
-        return start, SampleTimes(left, self.step, 0.0, moment + off)
+            return start, SampleTimes(remaining, self.step, 2 * self.slack, moment)
+        off = arb(float(remaining[0])) - arb(float(self.seconds[0])) - ball(self.step) * start
+        return start, SampleTimes(remaining, self.step, 0.0, moment + off)
 
     def spread(self, start: int = 0, delay: arb | None = None) -> tuple[list[arb], list[arb]]:
         """Return two lists whose sums, a by a, are all times from number ``start`` on, less ``delay``."""

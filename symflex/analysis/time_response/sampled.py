@@ -59,7 +59,7 @@ class PartialSum:
     def sampled(self) -> Sampled:
         """The response, with what is left out as part of its balls."""
         rests = self.at_times or (self.rest,) * len(self.values)
-        values = tuple(y + arb(0, rest.upper()) for y, rest in zip(self.values, rests, strict=True))
+        values = tuple(y + arb(0, tail.upper()) for y, tail in zip(self.values, rests, strict=True))
         return Sampled(values, modes=self, method=self.method)
 
 

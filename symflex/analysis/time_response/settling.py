@@ -75,8 +75,8 @@ class _Loop:
                 continue
             # c e^(-s T) passes straight through: H - c e^(-s T) is left, whose numerator is of lower degree.
             c = part.polynomial[n] / self.leading[n]
-            left = (part.polynomial - c * self.leading).coeffs()[:n]
-            self.above.append(LatePolynomial(arb_poly(left), part.seconds))
+            proper = (part.polynomial - c * self.leading).coeffs()[:n]
+            self.above.append(LatePolynomial(arb_poly(proper), part.seconds))
             self.above += [LatePolynomial(-c * p.polynomial, part.seconds + p.seconds) for p in self.below]
             self.passed.append(part.seconds)
         self._exact, self._digits = durations.exact(quotient.below[self.first]), digits
@@ -178,12 +178,12 @@ def settled(
         begins = next(
             (
                 i
-                for i, (t, rest) in enumerate(zip(seconds, rests, strict=True))
-                if rest < negligible and all(t > passed for passed in late.passed)
+                for i, (t, tail) in enumerate(zip(seconds, rests, strict=True))
+                if tail < negligible and all(t > passed for passed in late.passed)
             ),
             len(rests),
         )
-        values = [y + arb(0, rest) for y, rest in zip(summed[begins:], rests[begins:], strict=True)]
+        values = [y + arb(0, tail) for y, tail in zip(summed[begins:], rests[begins:], strict=True)]
     early = echoed(quotient, integrations, replace(times, seconds=times.seconds[:begins]), digits)
     if early is None:
         return None
@@ -218,10 +218,10 @@ def _on_line(loop: _Loop, rate: arb) -> tuple[arb, int] | None:
             return None
     right = 0
     for pole in loop.poles:
-        place = pole.enclosure().real + rate
-        if place.contains(0):
+        distance = pole.enclosure().real + rate
+        if distance.contains(0):
             return None
-        right += pole.multiplicity if place > 0 else 0
+        right += pole.multiplicity if distance > 0 else 0
     # Beyond the radius F is at least 1/2, and H/s falls as one over s squared.
     total = 2 * loop.far(loop.above, rate, radius) / radius
     left = iter(range(EFFORT.line_parts))
@@ -244,8 +244,8 @@ def _on_line(loop: _Loop, rate: arb) -> tuple[arb, int] | None:
         return None
     # The rest of the way around is an arc on which F stays within 1/2 of 1.
     count = right + turned / arb.pi()
-    whole = count.unique_fmpz()
-    return None if whole is None else ((total / arb.pi()).upper(), int(whole))
+    turns = count.unique_fmpz()
+    return None if turns is None else ((total / arb.pi()).upper(), int(turns))
 
 
 def pieces_of(

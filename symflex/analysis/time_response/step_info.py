@@ -163,10 +163,10 @@ def _of_modes(bound: BoundTransferFunction, known: PartialSum | None) -> StepInf
         if final is None:
             return None
         moving = [_scaled(t, final) for t in modal_sum.terms if not t.rate.is_zero()]
-        rest = (modal_sum.rest / abs(final)).upper()
+        tail = (modal_sum.rest / abs(final)).upper()
         best: StepInfo | None = None
         for count in SMOOTH_MODES:
-            info = _told(final, NormalisedResponse(_pieces(moving, count, rest, modal_sum.fade)))
+            info = _told(final, NormalisedResponse(_pieces(moving, count, tail, modal_sum.fade)))
             best = info if best is None or info.missing < best.missing else best
             if not best.missing:
                 break
@@ -182,7 +182,7 @@ def _resting(terms: Sequence[ExponentialTerm]) -> arb | None:
     return final if all(t.rate.real < 0 for t in terms if not t.rate.is_zero()) else None
 
 
-def _pieces(terms: Sequence[ExponentialTerm], count: int, rest: arb, fade: arb) -> list[Piece]:
+def _pieces(terms: Sequence[ExponentialTerm], count: int, tail: arb, fade: arb) -> list[Piece]:
     """Return a response by its largest terms, in pieces of doubled times, beside ``exp(-fade t)``."""
     lasting = sorted((-1 / t.rate.real for t in terms), key=arb.mid)  # time constants
     starts = [each.mid() for each in lasting[-1:]]
@@ -190,10 +190,12 @@ def _pieces(terms: Sequence[ExponentialTerm], count: int, rest: arb, fade: arb) 
         starts.append(starts[-1] / 2)
     pieces = []
     for begins in (arb(0), *reversed(starts)):
-        sizes = sorted(((_size(t, begins), t) for t in terms), key=lambda own: float(own[0]), reverse=True)
+        sizes = sorted(
+            ((_size(t, begins), t) for t in terms), key=lambda sized: float(sized[0]), reverse=True
+        )
         kept = [t for size, t in sizes[:count] if not size < DEAD]
-        left = sum((size for size, _ in sizes[len(kept) :]), rest * (-fade * begins).exp())
-        pieces.append(Piece(tuple(kept), begins, constant=1, rest=left.upper()))
+        dropped = sum((size for size, _ in sizes[len(kept) :]), tail * (-fade * begins).exp())
+        pieces.append(Piece(tuple(kept), begins, constant=1, rest=dropped.upper()))
     return pieces
 
 
@@ -215,7 +217,9 @@ def _of_delays(bound: BoundTransferFunction) -> StepInfo | None:
             pieces = None
         if pieces is None:
             return StepInfo(final, None, None, None, None, None)
-        early = [Piece(tuple(_scaled(t, final) for t in own), start, start) for start, own in pieces]
+        early = [
+            Piece(tuple(_scaled(t, final) for t in until_then), start, start) for start, until_then in pieces
+        ]
         last = Piece(terms, until, constant=1, rest=arb(FADED))
         return _told(final, NormalisedResponse([*early, last]))
 
@@ -305,11 +309,11 @@ class Piece:
 def _sum_of(terms: Sequence[ExponentialTerm], t: arb) -> arb:
     total = arb(0)
     for term in terms:
-        power, own = arb(1), acb(0)
+        power, polynomial = arb(1), acb(0)
         for j, c in enumerate(term.coefficients):
             power = power * t / j if j else power
-            own = own + c * power
-        total += ((term.rate * t).exp() * own).real
+            polynomial = polynomial + c * power
+        total += ((term.rate * t).exp() * polynomial).real
     return total
 
 
@@ -403,17 +407,17 @@ class NormalisedResponse:
         )
         if search.unseen:
             return None
-        left = sorted((v for v in search.decided if not v.most < best), key=lambda v: v.span.low.mid())
-        if not left:
+        candidates = sorted((v for v in search.decided if not v.most < best), key=lambda v: v.span.low.mid())
+        if not candidates:
             return None, arb(1).union(best)
-        spans = [values.span for values in left]
+        spans = [values.span for values in candidates]
         if any(a.high < b.low for a, b in itertools.pairwise(spans)):
             return None  # two peaks, maybe
         begun, piece = spans[0].low, spans[0].piece
         if piece.rest == 0 and all(s.piece is piece and piece.slope(s.low, s.high) < 0 for s in spans):
             return begun, piece.at(begun)  # it begins at its peak
-        highest = left[0].response
-        for values in left[1:]:
+        highest = candidates[0].response
+        for values in candidates[1:]:
             highest = highest.union(values.response)
         return begun.union(spans[-1].high), highest
 

@@ -112,7 +112,7 @@ class WaveQuotient:
             if sizes is None:
                 radius = EFFORT.wave_circles * radius
                 continue
-            echoes = arriving(*sizes, _total, lambda own, q: (own * q).upper(), durations, last)
+            echoes = arriving(*sizes, _total, lambda grown, q: (grown * q).upper(), durations, last)
             echo_sizes = [size for _, size in echoes]
             return radius, max(echo_sizes, default=arb(1), key=arb.mid).max(1), len(echo_sizes)
         return None
@@ -125,8 +125,8 @@ class WaveQuotient:
         below: dict[Delay, arb] = {}
         for k in reversed(range(EFFORT.wave_arcs)):
             turn = arb(k).union(arb(k + 1)) / EFFORT.wave_arcs * arb.pi()
-            place = _AtInfinity.on(self, acb(0, turn).exp() / radius, origin)
-            parts = None if place is None else self._normalised(place)
+            arc = _AtInfinity.on(self, acb(0, turn).exp() / radius, origin)
+            parts = None if arc is None else self._normalised(arc)
             if parts is None or _may_turn(at_centre(parts.lead) / lead):
                 return None
             for sizes, side in ((above, parts.above), (below, parts.below)):
@@ -134,15 +134,15 @@ class WaveQuotient:
                     sizes[delay] = sizes.get(delay, arb(0)).max(abs(at_centre(value)).upper())
         return above, below
 
-    def _normalised(self, place: _AtInfinity) -> _Parts | None:
+    def _normalised(self, at_infinity: _AtInfinity) -> _Parts | None:
         """Return the function over powers of s; None if D_0 may be 0."""
         above: dict[Delay, Value] = {NO_DELAY: acb(ball(self.bound.ratio.unit))}
         below: dict[Delay, Value] = {NO_DELAY: acb(1)}
         for number, (_, exponent) in enumerate(self.sums):
-            own = place.sum(number)
+            sums = at_infinity.sum(number)
             for _ in range(abs(exponent)):
                 above, below = (
-                    (_product(above, own), below) if exponent > 0 else (above, _product(below, own))
+                    (_product(above, sums), below) if exponent > 0 else (above, _product(below, sums))
                 )
         first = earliest(below, self.reader.durations)
         lead = below.pop(first)
@@ -152,8 +152,8 @@ class WaveQuotient:
         return _Parts(begun, {later(d, first): -v / lead for d, v in below.items()}, lead)
 
     def _summed(self, shift: int, times: SampleTimes, missing: arb) -> Sampled:
-        place = _AtInfinity.on(self, acb_series([0, 1]))
-        parts = None if place is None else self._normalised(place)
+        at_infinity = _AtInfinity.on(self, acb_series([0, 1]))
+        parts = None if at_infinity is None else self._normalised(at_infinity)
         if parts is None:
             raise TooManyEchoesError
         durations = self.reader.durations
@@ -161,14 +161,16 @@ class WaveQuotient:
         total = Gathered(seconds)
         off = arb(0, missing)
         begun, below = ({d: _real(v) for d, v in side.items()} for side in (parts.above, parts.below))
-        for echo, series in arriving(begun, below, _total, lambda own, q: own * q, durations, seconds[-1]):
+        for echo, series in arriving(
+            begun, below, _total, lambda series_then, q: series_then * q, durations, seconds[-1]
+        ):
             delay = durations.seconds(echo)
             by_power = dict(enumerate(series.coeffs(), shift))  # of 1/s
             zero = arb(0)
             weights = [by_power.get(-k, zero) for k in range(max(0, 1 - shift))]
-            rest = [by_power.get(k, zero) for k in range(1, max(by_power, default=0) + 1)] or [zero]
-            values = _in_time(rest, times, total.start(delay), delay, off)
-            total.add(delay, weights, rest[0], values, is_late=bool(echo))
+            coefficients = [by_power.get(k, zero) for k in range(1, max(by_power, default=0) + 1)] or [zero]
+            values = _in_time(coefficients, times, total.start(delay), delay, off)
+            total.add(delay, weights, coefficients[0], values, is_late=bool(echo))
         return total.sampled("wave echoes")
 
 
@@ -300,7 +302,7 @@ def _root(square: Value) -> Value:
 def _over(bound: BoundTransferFunction, value: Factored, power: int, x: Value) -> Value:
     """Return a product of polynomials in s, over a power of it, where it is analytic in x."""
     total: Value = acb(ball(value.unit))
-    left = power
+    remaining = power
     for factor, exponent in value.factors:
         polynomial = polynomial_in_s(bound, factor).enclosure()
         own: Value = acb(0)
@@ -308,11 +310,11 @@ def _over(bound: BoundTransferFunction, value: Factored, power: int, x: Value) -
             own = own * x + c
         if exponent < 0 and _may_turn(at_centre(own) / acb(polynomial[polynomial.degree()])):
             raise _BranchError
-        left -= int(polynomial.degree()) * exponent
+        remaining -= int(polynomial.degree()) * exponent
         total = total * own**exponent
-    if left < 0:
+    if remaining < 0:
         raise _BranchError
-    return total * x**left if left else total
+    return total * x**remaining if remaining else total
 
 
 def wave_quotient(bound: BoundTransferFunction) -> WaveQuotient | str:

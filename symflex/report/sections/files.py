@@ -147,8 +147,8 @@ def data_section(study: Study) -> ChapterPart | None:
         band = f"{measured.frequency_hz[0]:.4g} to {measured.frequency_hz[-1]:.4g} Hz"
         whose = "the synthetic" if measured.is_synthetic else "the measured"
         misfit = f"{comparison.decibels:.3g} dB and {comparison.degrees:.3g} degrees rms"
-        rest = f" differs from {whose} data by {misfit}, with equal weight for every line."
-        blocks.append(text("From ", band, ", ", Code(measured.name), rest))
+        ending = f" differs from {whose} data by {misfit}, with equal weight for every line."
+        blocks.append(text("From ", band, ", ", Code(measured.name), ending))
     return ChapterPart("Data", tuple(blocks), files) if blocks else None
 
 

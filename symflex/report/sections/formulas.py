@@ -101,11 +101,11 @@ def motion_section(study: Study) -> ChapterPart | None:
             return (Code(f"{format_expression(left)} = {format_expression(right)}"),)
         return (labelled(left, labels), f"{primes} = ", labelled(right, labels))
 
-    rest = list[Run]()
+    runs = list[Run]()
     for name, value in point.values:
         still = name.rstrip("'")
-        rest += [", " if rest else "At rest, ", *shown(Name(still), value, "′" * (len(name) - len(still)))]
-    blocks = [text(*rest, ". The names below stand for deviations from rest:")] if rest else []
+        runs += [", " if runs else "At rest, ", *shown(Name(still), value, "′" * (len(name) - len(still)))]
+    blocks = [text(*runs, ". The names below stand for deviations from rest:")] if runs else []
     solved = list[Run]()
     for name, shown_value in solved_values(study.model):
         solved += [", " if solved else "Solved at rest: ", labelled(Name(name), labels), f" = {shown_value}"]
@@ -211,7 +211,7 @@ def _audited(audit: Audit) -> tuple[Block, ...]:
     if audit.changes:
         labels = _labels(audit)
         parts = [(c.place, labelled(c.printed, labels), labelled(c.derived, labels)) for c in audit.changes]
-        rows = tuple(((place,), (printed,), (derived,)) for place, printed, derived in parts)
+        rows = tuple(((location,), (printed,), (derived,)) for location, printed, derived in parts)
         blocks.append(Table(columns("Where", "Printed", "Right"), rows, "What differs"))
     deviation = audit.deviation
     if deviation is not None:
@@ -235,8 +235,8 @@ def _labels(audit: Audit) -> dict[str, str]:
 def _formula(
     audit: Audit, expression: Expression, where: Sequence[tuple[str, Expression]], name: str
 ) -> DisplayedFormula:
-    left = Mathematics(ratio_mathml(audit.tf), ratio_latex(audit.tf))
-    return equations([(left, expression)], _labels(audit), name, where)
+    left_side = Mathematics(ratio_mathml(audit.tf), ratio_latex(audit.tf))
+    return equations([(left_side, expression)], _labels(audit), name, where)
 
 
 def equations(
@@ -252,7 +252,9 @@ def equations(
         is_narrow = writer.width(expression) <= WIDEST_FRACTION
         return (writer.piece(expression).markup,) if is_narrow else writer.pieces(expression)
 
-    rows = [MathRow(left.mathml, pieces(e)) for left, e in sides]
+    rows = [MathRow(left_side.mathml, pieces(e)) for left_side, e in sides]
     rows += [MathRow(label_mathml(n, labels), writer.pieces(e), is_where=True) for n, e in where]
-    latex = formula_latex([(left.latex, e) for left, e in sides], where, labels, width_mm=TEXT_WIDTH_MM)
+    latex = formula_latex(
+        [(left_side.latex, e) for left_side, e in sides], where, labels, width_mm=TEXT_WIDTH_MM
+    )
     return DisplayedFormula(tuple(rows), latex, name)

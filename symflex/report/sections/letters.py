@@ -64,10 +64,10 @@ def _limits(tf: AnyTransferFunction, labels: Mapping[str, str]) -> Iterator[Bloc
     runs, sides = list[Run](), list[tuple[Mathematics, Expression]]()
     for row in found.rows:
         name, end = named[row.name]
-        left = labelled(Name(name), LIMITS)
-        runs += ["; " if runs else "Leading terms: ", left, f" for {end}" if end else " where both meet"]
+        left_side = labelled(Name(name), LIMITS)
+        runs += ["; " if runs else "Leading terms: ", left_side, f" for {end}" if end else " where both meet"]
         runs += [f" ({unit_text(row.comment)})"] if row.comment else []
-        sides.append((left, row.expression))
+        sides.append((left_side, row.expression))
     if sides:
         where = [(row.name.removeprefix("where "), row.expression) for row in found.where]
         yield text(*runs, ".")

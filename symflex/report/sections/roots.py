@@ -95,8 +95,8 @@ def _of(located: PoleZeroMap, meaning: ZeroExplanation | None) -> tuple[Block, .
     shown = f" Listed: {region_text(located.region)}" if region_text(located.region) else ""
     blocks: list[Block] = [_stability(located.verdict), marked(mark, said + shown)]
     for part in located.excluded:
-        place = f"{part.radius:.3g} rad/s about {part.re:g} ± {part.im:g} j"
-        blocks.append(text(f"Left out: {place}, where roots accumulate."))
+        disc = f"{part.radius:.3g} rad/s about {part.re:g} ± {part.im:g} j"
+        blocks.append(text(f"Left out: {disc}, where roots accumulate."))
     for kind, title in KINDS.items():
         roots = roots_of(located, kind)
         entries = one_of_each_pair(roots)
