@@ -221,7 +221,10 @@ class Outline:
 
     def function_rows(self, functions: Mapping[str, str]) -> list[str]:
         """Return the rows of a table of functions by the names of what they compute."""
-        return [self.function.format(self.string(name), own) for name, own in functions.items()]
+        return [
+            self.function.format(self.string(name), function_name)
+            for name, function_name in functions.items()
+        ]
 
 
 @dataclass(frozen=True, slots=True)
@@ -294,15 +297,15 @@ class Language:
         if self.form != BAND and not reason:
             most = inf if self.is_open else CLOSED_OPERATIONS
             try:
-                own, response = choose_programs(tf, samples, has_real=self.has_real, most=most)
+                chosen, response = choose_programs(tf, samples, has_real=self.has_real, most=most)
             except BudgetError as problem:
                 if self.is_open or tf.is_rational:
                     raise
                 spend()
                 reason = problem.diagnostics[0].message
             else:
-                if self.is_open or tf.is_rational or (own[1].error or 0.0) <= LOST:
-                    return _members_of(tf, wanted, own, response)
+                if self.is_open or tf.is_rational or (chosen[1].error or 0.0) <= LOST:
+                    return _members_of(tf, wanted, chosen, response)
                 reason = "code of its formula would overflow, or lose more than half of the digits"
         program, verification, formula = choose_band(tf, self.up_to, samples)
         end = frequency_text(verification.band[1])
@@ -315,10 +318,10 @@ _Measured = tuple[Piecewise, Verification]
 
 
 def _members_of(
-    tf: AnyTransferFunction, wanted: str, own: _Measured, response: _Measured | None
+    tf: AnyTransferFunction, wanted: str, chosen: _Measured, response: _Measured | None
 ) -> tuple[Member, ...]:
     formula = formula_of(tf)
-    value = Member(tf, own[0], wanted, own[1], formula)
+    value = Member(tf, chosen[0], wanted, chosen[1], formula)
     if response is None:
         return (value,)
     return value, Member(tf, response[0], f"{wanted}_at", response[1], formula, is_response=True)
@@ -362,8 +365,8 @@ def parts_of(file: str, dialect: str = "") -> Mapping[tuple[str, ...], str]:
     texts: dict[tuple[str, ...], str] = {}
     others = parts_of(dialect)
     for names, text in parts.items():
-        own = next((other for other in others if not set(other).isdisjoint(names)), names)
-        texts.setdefault(own, others.get(own, text))
+        key = next((other for other in others if not set(other).isdisjoint(names)), names)
+        texts.setdefault(key, others.get(key, text))
     return texts
 
 

@@ -94,8 +94,8 @@ def _source(file: StepFile) -> str:
     states, sums = [], {name: list[str]() for name in outputs}
     for i, function in enumerate(file.functions):
         states.append(f"    {prefix}_{function.name}_state s{i};")
-        place = inputs.index(function.tf.input.name)
-        sums[function.tf.output.name].append(f"{prefix}_{function.name}_step(&m->s{i}, m->in[{place}])")
+        index = inputs.index(function.tf.input.name)
+        sums[function.tf.output.name].append(f"{prefix}_{function.name}_step(&m->s{i}, m->in[{index}])")
     lines = [
         f"#define INPUTS {len(inputs)}",
         f"#define OUTPUTS {len(outputs)}",
@@ -127,9 +127,9 @@ def _description(file: StepFile, name: str, token: str) -> str:
     used = [u for u in dict.fromkeys(units.get(what, "") for what in names) if u]
     variables = []
     for reference, (what, given) in enumerate(names.items(), 1):
-        causality, own = what.split(" ", 1)
+        causality, default = what.split(" ", 1)
         more = f" unit={quoteattr(units[what])}" if units.get(what) else ""
-        more += "" if given == own else f" description={quoteattr(what)}"
+        more += "" if given == default else f" description={quoteattr(what)}"
         start = ' start="0"' if causality == "input" else ""
         variables.append(
             f'    <Float64 name="{given}" valueReference="{reference}" causality="{causality}" '

@@ -212,10 +212,10 @@ class PrivateFunctions(ABC):
 
     def scope(self, assignments: Sequence[tree.Assignment], *words: str) -> tuple[InfixPrinter, list[str]]:
         """Return a printer, and identifiers for the code's own words, the first one s or its like."""
-        own = {f"{word} of the code": word for word in words}
+        reserved = {f"{word} of the code": word for word in words}
         taken = {*self.reserved, *self.parameters.values()}
-        names = identifiers({**own, **{a.name: a.name for a in assignments}}, taken, self.longest)
-        arguments = [names[key] for key in own]
+        names = identifiers({**reserved, **{a.name: a.name for a in assignments}}, taken, self.longest)
+        arguments = [names[key] for key in reserved]
         return self.printer(self.parameters, names, arguments[0], arguments[-1]), arguments
 
     def assigned(

@@ -226,8 +226,8 @@ class PairBody:
 
     def _operation(self, node: tree.CodeNode) -> ComplexParts:
         match node:
-            case tree.Add((first, *rest)):
-                return self._sum(first, rest)
+            case tree.Add((first, *others)):
+                return self._sum(first, others)
             case tree.Multiply(factors):
                 return reduce(self.multiply, map(self.value, factors))
             case tree.Divide(above, below):
@@ -245,9 +245,9 @@ class PairBody:
                 return self._apply(function, self.value(argument))
         raise TypeError(type(node).__name__)
 
-    def _sum(self, first: tree.CodeNode, rest: Sequence[tree.CodeNode]) -> ComplexParts:
+    def _sum(self, first: tree.CodeNode, others: Sequence[tree.CodeNode]) -> ComplexParts:
         result = self.value(first)
-        for term in rest:
+        for term in others:
             sign, node = ("-", term.operand) if isinstance(term, tree.Negate) else ("+", term)
             z = self.value(node)
             result = ComplexParts(_added(result.re, sign, z.re), _added(result.im, sign, z.im))
@@ -365,23 +365,23 @@ class PairFunctions:
         inner.write([inner.value(v) for v in code.values])
         if not piece.circle:
             return [self._function(name, outer, inner, "s_re, s_im, into")]
-        own = f"around_{name}"
-        whole = outer.within(2)
+        around = f"around_{name}"
+        mean_body = outer.within(2)
         step = 2 if kind == "parts" else 1
-        whole.lines = []
+        mean_body.lines = []
         mean = f"circle(parts, s_re, s_im, {piece.circle}, {step})"
-        whole.say(f"return over({mean});" if kind == "value" else f"into.set({mean});")
+        mean_body.say(f"return over({mean});" if kind == "value" else f"into.set({mean});")
         ahead = self._body()
-        ahead.say(f"const parts = {own}(p);")
+        ahead.say(f"const parts = {around}(p);")
         given = "s_re, s_im" + ", into" * (kind == "parts")
-        text = self._function(name, ahead, whole, given, takes="p")
-        return [self._function(own, outer, inner, "s_re, s_im, into"), text]
+        text = self._function(name, ahead, mean_body, given, takes="p")
+        return [self._function(around, outer, inner, "s_re, s_im, into"), text]
 
     def _choice(self, kind: str) -> str:
         """Return the function that finds the piece that serves."""
         program, into = self.program, ", into" * (kind == "parts")
         outer = self._body()
-        served = {k: [n for n, own in enumerate(program.pieces) if own == k] for k in set(program.pieces)}
+        served = {k: [n for n, piece in enumerate(program.pieces) if piece == k] for k in set(program.pieces)}
         for k in sorted(served):
             outer.say(f"const piece_{k} = {kind}_{k}_of_{self.name}(p);")
         if self.used and program.conditions:

@@ -98,7 +98,7 @@ class JuliaFunctions(PrivateFunctions):
         lines = self.assigned(program.tests.every, printer)
         if program.conditions:
             lines += self.statement(number, printer.piece_number(program))
-        served = {k: [n for n, own in enumerate(program.pieces) if own == k] for k in set(program.pieces)}
+        served = {k: [n for n, piece in enumerate(program.pieces) if piece == k] for k in set(program.pieces)}
         *others, last = sorted(served)
         for k in others:
             test = " || ".join(f"{number} == {n}" for n in served[k])
@@ -219,8 +219,8 @@ def _public(member: Member, functions: JuliaFunctions, of_s: str) -> str:
     lines += ["# Arguments", f"- {variable}: {what} [rad/s]."]
     lines += [*JULIA_OUTLINE.arguments(member.parameters, functions.parameters), ""]
     lines += [*JULIA_OUTLINE.verified(member, "."), "Not finite at poles."]
-    whole = f"{opening}{'; ' if signature else ''}{', '.join(signature)})"
-    first = [f"function {whole}"]
+    heading = f"{opening}{'; ' if signature else ''}{', '.join(signature)})"
+    first = [f"function {heading}"]
     if len(first[0]) > WIDTH:
         first = [f"function {opening};", *(f"    {x}," for x in signature[:-1]), f"    {signature[-1]})"]
     body = f"    return complex(_value_of_{functions.name}({', '.join(arguments)}))"

@@ -233,8 +233,8 @@ class _File:
         self.fields = identifiers(wanted, RESERVED | OTHER_FIELDS, LONGEST)
         self.public = identifiers(self.fields, RESERVED | {self.main} | TOOLBOX, LONGEST)
         self.taken = {*RESERVED, self.main, *self.public.values()}
-        own = ((m, RationalSystem.of(m.tf)) for m in self.members if not m.is_response)
-        self.systems = {m.key: system for m, system in own if system is not None}
+        pairs = ((m, RationalSystem.of(m.tf)) for m in self.members if not m.is_response)
+        self.systems = {m.key: system for m, system in pairs if system is not None}
         # Private functions, by member and role.
         roles = {
             (m.key, role): f"{self.public[m.key]}_{role}" for m in self.members for role in self._roles(m)
@@ -262,16 +262,16 @@ class _File:
                 blocks.append(self._response(m))
                 code += blocks[-1]
                 continue
-            own = {role: self.private[m.key, role] for role in self._roles(m)}
+            private_names = {role: self.private[m.key, role] for role in self._roles(m)}
             functions = LocalFunctions(
-                m.program, self.public[m.key], self.parameters, self.taken - WORDS, own
+                m.program, self.public[m.key], self.parameters, self.taken - WORDS, private_names
             )
             local = functions.blocks()
             given = _given(self.parameters[p] for p in m.program.parameters)
             blocks += [_function(*self._head(m, "s"), *given, *functions.call()), *local]
             code += "\n".join([*functions.call(), *local])
             if m.key in self.systems:
-                blocks += self._system_functions(self.systems[m.key], own)
+                blocks += self._system_functions(self.systems[m.key], private_names)
         blocks += called_parts(code, PARTS, ("numbers", "columns", *(["system_of"] if self.systems else [])))
         shown = inert(self.stem[:LONGEST_STEM])
         warning = f"MATLAB cannot call a file '{shown}.m': name it '{self.main}.m', as its function"
@@ -380,7 +380,9 @@ class _File:
         used = [self.parameters[p.name] for p in tf.parameters]
         taken = {*self.taken, *self.parameters.values()}
         local = identifiers({n: n for n in ("num", "den", "delay")}, taken).values()
-        renamed: dict[str, Expression] = {name: Name(own) for name, own in self.parameters.items()}
+        renamed: dict[str, Expression] = {
+            name: Name(identifier) for name, identifier in self.parameters.items()
+        }
 
         def text(expression: Expression) -> str:
             return format_expression(substitute(expression, renamed))
@@ -441,7 +443,7 @@ class RationalSystem:
         exponentials = {k.generator: k for k in tf.kernels.kernels if k.function == "exp"}
         ring = tf.ratio.ring
         others = {*tf.kernels.generators, *(w for d in tf.kernels.dispersions for w in d.wavenumbers)}
-        rest = Factored.number(ring, tf.ratio.unit)
+        polynomial = Factored.number(ring, tf.ratio.unit)
         delays: list[Expression] = []
         for factor, exponent in tf.ratio.factors:
             one = Factored.polynomial(ring, factor)
@@ -449,7 +451,7 @@ class RationalSystem:
             if kernel is None:
                 if any(one.depends_on(name) for name in others if name in ring.index):
                     return None
-                rest = rest * one**exponent
+                polynomial = polynomial * one**exponent
                 continue
             delay = kernel.dispersion.shift * kernel.length * exponent
             delay = delay / Factored.generator(delay.ring, LAPLACE)
@@ -459,7 +461,7 @@ class RationalSystem:
         arranger = Arranger.plain(ring, constant_symbols(tf))
         num, den = (
             tuple(number(0) if part.is_zero() else arranger.coefficient(part) for part in coefficients)
-            for side in (rest.numerator(), rest.denominator())
+            for side in (polynomial.numerator(), polynomial.denominator())
             for coefficients in (reversed(ring.coefficients(side.expand())),)
         )
         if max(len(num), len(den)) > MOST_COEFFICIENTS:

@@ -50,8 +50,8 @@ def formula_of(tf: AnyTransferFunction) -> tuple[str, ...]:
     elif tf.closed is not None and len(tf.closed.num) + len(tf.closed.den) <= FORMULA_TERMS:
         form = print_form(tf, "definitions")
     if form is not None:
-        whole = format_expression(form.num if is_number(form.den, 1) else Quotient(form.num, form.den))
-        lines = [inert(f"{tf.name} = {whole}")]
+        formula = format_expression(form.num if is_number(form.den, 1) else Quotient(form.num, form.den))
+        lines = [inert(f"{tf.name} = {formula}")]
         for i, (symbol, expression) in enumerate(form.where):
             word = "where" if i == 0 else "     "
             lines.append(f"{word} {inert(f'{symbol} = {format_expression(expression)}')}")

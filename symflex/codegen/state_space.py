@@ -193,9 +193,9 @@ class _Module:
             arrays = []
             for letter, _, shape in self._system.matrices:
                 arrays.append(np.zeros(shape))
-                for place, node in self._entries[letter].items():
+                for index, node in self._entries[letter].items():
                     program = tree.lumped(tuple(given), tree.Straight((), (), (node,)))
-                    arrays[-1][place] = float(evaluate(program, 0.0, given).real)
+                    arrays[-1][index] = float(evaluate(program, 0.0, given).real)
             return [value[row][column] for value in response(Arrays(*arrays), s.tolist())]
 
         count = min(samples, max(FEWEST, WORK // max(1, self._system.order) ** 3))

@@ -272,9 +272,9 @@ class Body:
     @classmethod
     def of(cls, members: Mapping[str, str], s: Term) -> Body:
         """Return the scope of a function of parameters that are members of a structure."""
-        own = cls(identifiers(members, TAKEN), s)
-        own._taken |= {*TAKEN, *own.parameters.values()}
-        return own
+        body = cls(identifiers(members, TAKEN), s)
+        body._taken |= {*TAKEN, *body.parameters.values()}
+        return body
 
     def within(self, depth: int | None = None) -> Body:
         """Return the scope of a block: it sees these variables, and what it makes stays known to itself."""
@@ -443,8 +443,10 @@ def conditions_of(program: tree.Piecewise, scope: Body) -> list[str]:
     for condition, limit in zip(program.conditions, limits, strict=True):
         quantity = scope.term(condition.quantity)
         if not condition.limit:
-            left = product(scope.term(condition.scale), quantity)
-            text = {Kind.COMPLEX: f"{left.text}.re", Kind.REAL: left.text, Kind.IMAGINARY: "0.0"}[left.kind]
+            scaled = product(scope.term(condition.scale), quantity)
+            text = {Kind.COMPLEX: f"{scaled.text}.re", Kind.REAL: scaled.text, Kind.IMAGINARY: "0.0"}[
+                scaled.kind
+            ]
             conditions.append(f"{text} < 0.0")
             continue
         size = "cx_abs" if quantity.kind is Kind.COMPLEX else "fabs"
@@ -474,7 +476,7 @@ def choose(
             names.append(f"{2**i} * {name}" if i else name)
         scope.add(f"switch ({' + '.join(names)}) {{")
         for k in sorted({*program.pieces} - {default}):
-            scope.add(*(f"case {n}:" for n, own in enumerate(program.pieces) if own == k))
+            scope.add(*(f"case {n}:" for n, number in enumerate(program.pieces) if number == k))
             scope.lines += statement("return", piece(k), scope.depth + 1)
         scope.add("}")
     scope.say("return", piece(default))

@@ -136,8 +136,8 @@ class Functions:
         for i, value in enumerate(values):
             scope.say(f"value[{i}] =", complex_term(value).text)
         parts = [f"static void parts_of_{name}(cx s, const {self.structure} *p, cx *value)", "{"]
-        whole = f"{STEP}return cx_circle(parts_of_{name}, s, p, {piece.circle});"
-        return [self._ends(scope, parts), [*self._head(name), whole, "}"]]
+        returned = f"{STEP}return cx_circle(parts_of_{name}, s, p, {piece.circle});"
+        return [self._ends(scope, parts), [*self._head(name), returned, "}"]]
 
     # -------------------------------------------------------------------------------- frequency response
 
@@ -295,16 +295,16 @@ def _stages(code: tree.Straight, scope: Body, condition: str) -> None:
     inner = scope.within()
     for stage in range(stages[-1] + 1):
         inner.lines = []
-        for assignment, own in zip(code.assignments, stages, strict=False):
-            if own != stage:
+        for assignment, own_stage in zip(code.assignments, stages, strict=False):
+            if own_stage != stage:
                 continue
             if assignment.name not in arrays:
                 inner.assign([assignment])
                 continue
             term = inner.whole(assignment.value)
-            place = f"{arrays[assignment.name]}[j]"
-            inner.say(f"{place} =", term.text)
-            inner.values[assignment.name] = Term(place, term.kind, varies=True)
+            entry = f"{arrays[assignment.name]}[j]"
+            inner.say(f"{entry} =", term.text)
+            inner.values[assignment.name] = Term(entry, term.kind, varies=True)
         if stage == stages[-1]:
             num, den = (inner.term(v) for v in code.values)
             target = inner.within() if condition else inner

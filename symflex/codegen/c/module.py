@@ -81,9 +81,9 @@ class _Files:
             free = (identifier + "_" * n for n in count())
             own_name = next(n for n in free if taken.isdisjoint((n, f"{n}_freq")))
             taken |= {own_name, f"{own_name}_freq"}
-            own = (own_name, self.prefix, self.structure, self.members, self.of_s[key].program)
+            arguments = (own_name, self.prefix, self.structure, self.members, self.of_s[key].program)
             axis = self.on_axis[key].program if key in self.on_axis else None
-            self.functions[key] = Functions(*own, axis)
+            self.functions[key] = Functions(*arguments, axis)
 
     def made(self) -> Export:
         declared = []
@@ -190,9 +190,9 @@ def helpers(code: str, parameters: str, order: int) -> str:
     """Return what some code calls: of a type of ``parameters``, and equations of at most an ``order``."""
     always, others = ["cx"], ""
     if re.search(r"\bLANES\b", code):
-        own = [f for f in LANE_FUNCTIONS if re.search(rf"\blane_{f}\(", code)]
-        always += ["ROUNDER", "OTHERWISE"] if own else ["LANES"]
-        others = "".join(f"#define lane_{f} {f}\n" for f in own)
+        called = [f for f in LANE_FUNCTIONS if re.search(rf"\blane_{f}\(", code)]
+        always += ["ROUNDER", "OTHERWISE"] if called else ["LANES"]
+        others = "".join(f"#define lane_{f} {f}\n" for f in called)
     text = "\n".join(called_parts(code, PARTS, always)).replace("OTHERWISE\n", others)
     return text.replace("PARAMETERS", parameters).replace("CX_ORDER", str(max(order, 1)))
 

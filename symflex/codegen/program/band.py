@@ -359,10 +359,10 @@ def _fit(values: EnclosedValues, made: BandForm, count: int) -> tuple[float, lis
         even, odd, angle, before, tilt = [], [], arb(0), 0.0, float(slope.real.mid())
         for i, (x, value, slope) in enumerate(nodes):
             relative = value / arb(gain)
-            own = float(slope.real.mid())
-            expected = angle + arb((tilt + own) / 2 * (x - before) * made.end)
+            tilt_here = float(slope.real.mid())
+            expected = angle + arb((tilt + tilt_here) / 2 * (x - before) * made.end)
             turned = (relative * (acb(0, -1) * expected).exp()).arg()
-            angle, before, tilt = expected + turned, x, own
+            angle, before, tilt = expected + turned, x, tilt_here
             # From the double to the point itself: else the series would end in the double's rounding.
             node = _node(count, i)
             step = slope * acb(0, arb(made.end) * node - arb(x * made.end))

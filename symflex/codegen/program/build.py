@@ -280,8 +280,8 @@ def build_nested(tf: NestedTransferFunction) -> Piecewise:
     )
     for i, name in step_names(tf).items():
         forge.label(forge.signed(made[i])[1], name)
-    whole = forge.divide(made[tf.num], made[tf.den])
-    return schedule(forge, tuple(p.name for p in tf.parameters), whole, None, inf)
+    ratio = forge.divide(made[tf.num], made[tf.den])
+    return schedule(forge, tuple(p.name for p in tf.parameters), ratio, None, inf)
 
 
 def _generators(forge: Forge, model: Model, constants: Iterable[ConstantFunction]) -> Callable[[str], int]:

@@ -121,14 +121,14 @@ def _of_composed(node: tree.CodeNode, assigned: dict[str, tree.CodeNode | None])
 
 
 def _total(terms: Sequence[tree.CodeNode | None]) -> tree.CodeNode | None:
-    left = tuple(t for t in terms if t is not None)
-    return tree.Add(left) if len(left) > 1 else left[0] if left else None
+    nonzero = tuple(t for t in terms if t is not None)
+    return tree.Add(nonzero) if len(nonzero) > 1 else nonzero[0] if nonzero else None
 
 
 def _product(factors: Sequence[tree.CodeNode]) -> tree.CodeNode:
     """Return a product without factors of one, the sign before it."""
     sign = reduce(lambda minus, f: minus ^ isinstance(f, tree.Negate), factors, False)
     plain = [f.operand if isinstance(f, tree.Negate) else f for f in factors]
-    left = tuple(f for f in plain if f != tree.ONE) or (tree.ONE,)
-    whole = tree.Multiply(left) if len(left) > 1 else left[0]
-    return tree.Negate(whole) if sign else whole
+    factors_kept = tuple(f for f in plain if f != tree.ONE) or (tree.ONE,)
+    product = tree.Multiply(factors_kept) if len(factors_kept) > 1 else factors_kept[0]
+    return tree.Negate(product) if sign else product

@@ -201,20 +201,20 @@ class _PieceMaker:
         sides = (self.tf.num, self.tf.den)
         above, below = (v.filter(lambda f: self._holds(f, self.kernels)) for v in sides)
         kernels = (above.numerator() * below.denominator(), above.denominator() * below.numerator())
-        rest = [v.filter(lambda f: not self._holds(f, self.kernels)) for v in sides]
-        waves = [v.filter(lambda f: self._holds(f, self.waves)) for v in rest]
+        coefficients = [v.filter(lambda f: not self._holds(f, self.kernels)) for v in sides]
+        waves = [v.filter(lambda f: self._holds(f, self.waves)) for v in coefficients]
         plains = [
             v.filter(lambda f: not self._holds(f, self.waves)) * side.unit
-            for v, side in zip(rest, sides, strict=True)
+            for v, side in zip(coefficients, sides, strict=True)
         ]
         expanded = [expand(self.ring, k.expand(), self.families) for k in kernels]
         sums = self._in_segments([terms for terms, _ in expanded])
         halves = []
-        for side, (own, terms, (_, common)) in enumerate(zip(waves, sums, expanded, strict=True)):
+        for side, (wave, terms, (_, common)) in enumerate(zip(waves, sums, expanded, strict=True)):
             # A common factor without wavenumbers leaves the half; wavenumbers stay, to balance its own.
             free = common.filter(lambda f: not self._holds(f, self.waves | self.kernels)) * common.unit
             plains[side] = plains[side] * free
-            halves.append(self._half(terms, own * (common / free)))
+            halves.append(self._half(terms, wave * (common / free)))
         return (plains[0], plains[1]), (halves[0], halves[1])
 
     def _in_segments(self, sums: list[KernelSum]) -> list[KernelSum]:
@@ -307,9 +307,9 @@ class _PieceMaker:
         counts = []
         for group in self.groups:
             limit = self.reach / group.spread
-            own = [(x, limit**power, c) for x, c, power in site.sizes(group.dispersion, group.length)]
-            tests += own
-            counts.append(len(own))
+            own_tests = [(x, limit**power, c) for x, c, power in site.sizes(group.dispersion, group.length)]
+            tests += own_tests
+            counts.append(len(own_tests))
         return tests, counts
 
     def _near(self, bits: Sequence[bool], counts: Sequence[int]) -> tuple[bool, ...]:
@@ -336,7 +336,7 @@ class _PieceMaker:
         with np.errstate(all="ignore"):
             piece_numbers = numbers_of_pieces(program, omega if program.is_real else 1j * omega, self.values)
         bits = [[bool(number >> i & 1) for i in range(sum(counts))] for number in set(piece_numbers.tolist())]
-        return {self._near(own, counts) for own in bits}.__contains__
+        return {self._near(near, counts) for near in bits}.__contains__
 
     def program(self) -> Piecewise:
         """Return the program for complex s."""
@@ -422,8 +422,8 @@ class _PieceMaker:
         site = Site(forge, self.tf, self.families, delays, self._exponents())
         groups: list[_Group] = [g for g, n in zip(self.groups, near, strict=True) if n]
         for group, is_near in zip(self.groups, near, strict=True):
-            if not is_near and group.dispersion in lone and (own := self._lone(group)) is not None:
-                groups.append(own)
+            if not is_near and group.dispersion in lone and (lone_group := self._lone(group)) is not None:
+                groups.append(lone_group)
         scales = self._scales(groups, site.grows)
         values, gain = [], self.plain
         for half, sign in zip(self.halves, (1, -1), strict=True):
@@ -470,11 +470,11 @@ class _PieceMaker:
         parts = self._local_parts(half, near)
         taken = Factored.number(self.ring, 1)
         if len(near) == len(self.groups) or any(isinstance(g, _Lone) for g in near):
-            taken = self._power_of_s(v for rest in parts.values() for v in rest.values())
+            taken = self._power_of_s(v for by_key in parts.values() for v in by_key.values())
         summands = []
         solution = cache(partial(self._solution, site))
-        for orders, rest in parts.items():
-            leaves = {key: site.value(v / taken) for key, v in rest.items()}
+        for orders, by_key in parts.items():
+            leaves = {key: site.value(v / taken) for key, v in by_key.items()}
             inner = site.exponential_sum(leaves, scales)
             summands.append(forge.multiply([inner, *map(solution, near, orders)]))
         return forge.add(summands), taken
@@ -524,7 +524,10 @@ class _PieceMaker:
         first, *others = near
         for order in range(first.basis.order):
             if derived := self._derivative(terms, first, order):
-                yield from (((order, *rest), own) for rest, own in self._derivatives(derived, others))
+                yield from (
+                    ((order, *orders), derivative)
+                    for orders, derivative in self._derivatives(derived, others)
+                )
 
     def _derivative(self, terms: KernelSum, group: _Group, order: int) -> KernelSum:
         """Return the derivative of a sum with respect to a length at zero."""
@@ -538,10 +541,10 @@ class _PieceMaker:
             else:
                 pairs = [key[i][0] for i in group.families]
                 (a, _), (b, _) = (p[group.position] for p in pairs)
-                rest = list(key)
+                other_key = list(key)
                 for i, p in zip(group.families, pairs, strict=True):
-                    rest[i] = ((*p[: group.position], (0, 0), *p[group.position + 1 :]), 0)
-                moved = [(tuple(rest), (gens[0] * a + gens[1] * b) ** order)]
+                    other_key[i] = ((*p[: group.position], (0, 0), *p[group.position + 1 :]), 0)
+                moved = [(tuple(other_key), (gens[0] * a + gens[1] * b) ** order)]
             for k, factor in moved:
                 derivative[k] = derivative.get(k, self.ring.constant(0)) + polynomial * factor
         return {k: p for k, p in derivative.items() if len(p)}
@@ -574,8 +577,8 @@ class _PieceMaker:
         even = -power + power % 2
         outside = value.exponent_of(first)
         # Powers of the larger one stay outside, where they are harmless; even ones are all there is of it.
-        whole = value / large**outside * (large * small) ** even
-        numerator = self._normal_form(whole.numerator().expand()) / whole.denominator()
+        scaled = value / large**outside * (large * small) ** even
+        numerator = self._normal_form(scaled.numerator().expand()) / scaled.denominator()
         if numerator.is_zero:
             return numerator
         reduced, _ = cancel(numerator, dispersion.characteristic[0] ** (even // 2))
@@ -591,8 +594,8 @@ class _PieceMaker:
         meeting = min([0, *(e for f, e in value.factors if f == difference)])
         even, twice = -lowest + lowest % 2, -meeting + meeting % 2
         c0, c2 = dispersion.characteristic[0], dispersion.characteristic[2]
-        whole = value * (one * other) ** even * split**twice
-        numerator = self._normal_form(whole.numerator().expand()) / whole.denominator()
+        scaled = value * (one * other) ** even * split**twice
+        numerator = self._normal_form(scaled.numerator().expand()) / scaled.denominator()
         if numerator.is_zero:
             return numerator
         reduced, _ = cancel(numerator, c0 ** (even // 2) * (c2**2 - c0 * 4) ** (twice // 2))
@@ -606,10 +609,10 @@ class _PieceMaker:
         value, taken = self._value(half, (), site, scales)
         growth = [forge.multiply([forge.constant(d), site.angle(*at)]) for at, d in scales.items()]
         outside, s = self.plains[number] * taken * factor, self.ring.context.gen(0)
-        whole = (self.tf.num, self.tf.den)[number] * factor
+        expanded = (self.tf.num, self.tf.den)[number] * factor
         names = [(k.dispersion, k.generator) for k in self.table.kernels]
         names += [(law, wave) for law in self.table.dispersions for wave in law.wavenumbers]
-        used = {law for law, name in names if whole.depends_on(name)}
+        used = {law for law, name in names if expanded.depends_on(name)}
         laws = [c for law in self.table.dispersions if law in used for c in (*law.characteristic, law.shift)]
         # Powers of s stand against those of wavenumbers: what they make is a zero at s = 0, if anything.
         plain = outside.filter(lambda f: f != s and not self._holds(f, self.waves))
@@ -662,10 +665,10 @@ class _PieceMaker:
                 near = self._real_near(site, axis, half)
                 if near is None:
                     return None
-                value, own, taken = near
+                value, turn_here, taken = near
                 values.append(value)
                 gain = gain * taken**sign
-                turn += sign * own
+                turn += sign * turn_here
         else:
             sums = [axis.real_sum(h.terms, h.waves, self.families) for h in self.halves]
             above, below = sums
@@ -677,8 +680,8 @@ class _PieceMaker:
         real_gain = axis.real(gain)
         if real_gain is None:
             return None
-        real, own = real_gain[0] * waves, real_gain[1]
-        is_negative, turn = divmod((turn + own) % 4, 2)
+        real, turn_here = real_gain[0] * waves, real_gain[1]
+        is_negative, turn = divmod((turn + turn_here) % 4, 2)
         if wanted is not None and turn != wanted:
             return None
         real = -real if is_negative else real
@@ -690,7 +693,7 @@ class _PieceMaker:
         """Return a half where all arguments are small, its power of j, and the factor taken out."""
         forge = site.forge
         parts = self._local_parts(half, self.groups)
-        values = {orders: next(iter(rest.values())) for orders, rest in parts.items()}
+        values = {orders: next(iter(by_key.values())) for orders, by_key in parts.items()}
         taken = self._power_of_s(values.values())
         first: int | None = None
         summands = []

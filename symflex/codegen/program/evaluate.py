@@ -80,8 +80,8 @@ def evaluate(
                 for i, c in enumerate(columns)
             ]
             piece = program.code[program.pieces[int(n)]]
-            place = 1j * chosen[0] if piece.is_complex else chosen[0]
-            piece_values = value_of_piece(piece, place, dict(zip(given, chosen[1:], strict=True)))
+            sample = 1j * chosen[0] if piece.is_complex else chosen[0]
+            piece_values = value_of_piece(piece, sample, dict(zip(given, chosen[1:], strict=True)))
             result[where] = piece_values if piece.is_complex else turn * piece_values
     return result.reshape(shape)
 
@@ -165,8 +165,8 @@ class _ProgramRun:
                 return self._s
             case tree.InverseLaplace():
                 return 1.0 / self._s
-            case tree.Add((first, *rest)):
-                return reduce(self._plus, rest, self.value(first))
+            case tree.Add((first, *others)):
+                return reduce(self._plus, others, self.value(first))
             case tree.Multiply(factors):
                 return reduce(mul, map(self.value, factors))
             case tree.Divide(numerator, denominator):
@@ -261,8 +261,8 @@ def scaled_sum(amplitudes: list[Values], exponents: list[Values]) -> list[Values
         growth = np.maximum(growth, np.real(exponent))
     total = 0.0
     for amplitude, exponent in zip(amplitudes, exponents, strict=True):
-        left = np.asarray(exponent - growth, dtype=complex)[()]
-        total = total + amplitude * complex_exp(left)
+        relative = np.asarray(exponent - growth, dtype=complex)[()]
+        total = total + amplitude * complex_exp(relative)
     return [total, growth]
 
 

@@ -61,14 +61,14 @@ def families_of(ring: Ring, table: KernelTable) -> tuple[Family, ...]:
             family = by_wave.setdefault((kernel.wavenumber, kernel.dispersion), {})
             family.setdefault(kernel.length, []).append((kernel.function, ring.index[kernel.generator]))
     return tuple(
-        Family(dispersion, wavenumber, tuple(own), tuple(map(tuple, own.values())))
-        for (wavenumber, dispersion), own in by_wave.items()
+        Family(dispersion, wavenumber, tuple(of_wave), tuple(map(tuple, of_wave.values())))
+        for (wavenumber, dispersion), of_wave in by_wave.items()
     )
 
 
 def expand(ring: Ring, polynomial: fmpz_mpoly, families: Sequence[Family]) -> tuple[KernelSum, Factored]:
     """Return a polynomial in kernels as a sum whose coefficients share no factor, and that factor."""
-    kernels = [(f, i) for family in families for own in family.kernels for f, i in own]
+    kernels = [(f, i) for family in families for of_length in family.kernels for f, i in of_length]
     parts = coefficients_of(ring, polynomial, [i for _, i in kernels])
     halved = [n for n, (f, _) in enumerate(kernels) if f != "exp"]
     degree = max(sum(key[n] for n in halved) for key in parts)
@@ -77,7 +77,10 @@ def expand(ring: Ring, polynomial: fmpz_mpoly, families: Sequence[Family]) -> tu
         scaled = part * 2 ** (degree - sum(exponents[n] for n in halved))
         of = {i: e for (_, i), e in zip(kernels, exponents, strict=True)}
         for chosen in product(
-            *(_terms(tuple(tuple((f, of[i]) for f, i in own) for own in x.kernels)) for x in families)
+            *(
+                _terms(tuple(tuple((f, of[i]) for f, i in of_length) for of_length in x.kernels))
+                for x in families
+            )
         ):
             key = tuple(t for t, _ in chosen)
             term = scaled * prod(n for _, n in chosen)
@@ -94,7 +97,10 @@ def _terms(powers: tuple[Powers, ...]) -> tuple[tuple[Term, int], ...]:
     """Return a product of powers of one wavenumber's kernels, times two to the power of its degree."""
     terms = []
     # The greatest angles first, each before its opposite.
-    pieces = (sorted(expanded(dict(own)), key=lambda x: (-x[0], -abs(x[1]), -x[1])) for own in powers)
+    pieces = (
+        sorted(expanded(dict(exponentials)), key=lambda x: (-x[0], -abs(x[1]), -x[1]))
+        for exponentials in powers
+    )
     for chosen in product(*pieces):
         first = next((b for _, b, _ in chosen if b), 0)
         if first >= 0:
@@ -102,7 +108,8 @@ def _terms(powers: tuple[Powers, ...]) -> tuple[tuple[Term, int], ...]:
             re, im = reduce(times, (weight for _, _, weight in chosen))
             # A delay's kernel falls with its exponent.
             pairs = tuple(
-                (-a if own[0][0] == "exp" else a, b) for (a, b, _), own in zip(chosen, powers, strict=True)
+                (-a if exponentials[0][0] == "exp" else a, b)
+                for (a, b, _), exponentials in zip(chosen, powers, strict=True)
             )
             terms.append(((pairs, int(im != 0)), (re - im) * (2 if first else 1)))
     return tuple(terms)
@@ -115,9 +122,9 @@ def in_lengths(terms: KernelSum, changes: Sequence[Sequence[Sequence[int]]]) -> 
         sign, images = 1, []
         for (pairs, parity), matrix in zip(key, changes, strict=True):
             a, b = in_other_lengths(pairs, matrix)
-            image, own = canonical(tuple(zip(a, b, strict=True)), parity)
+            image, parity_sign = canonical(tuple(zip(a, b, strict=True)), parity)
             images.append(image)
-            sign *= own
+            sign *= parity_sign
         moved[tuple(images)] = polynomial * sign
     return moved
 
@@ -148,12 +155,12 @@ def derivative_at_zero(term: Term, position: int, order: int) -> tuple[tuple[Ter
     real, imaginary = 1, 0
     for _ in range(order):
         real, imaginary = a * real - b * imaginary, a * imaginary + b * real
-    rest = (*pairs[:position], (0, 0), *pairs[position + 1 :])
+    others = (*pairs[:position], (0, 0), *pairs[position + 1 :])
     # Re (z e^jR) = Re z cos R - Im z sin R, and Im (z e^jR) = Im z cos R + Re z sin R.
     parts = ((0, imaginary), (1, real)) if parity else ((0, real), (1, -imaginary))
     images = []
     for kind, number in parts:
-        image, sign = canonical(rest, kind)
+        image, sign = canonical(others, kind)
         if number * sign:
             images.append((image, number * sign))
     return tuple(images)
@@ -259,26 +266,26 @@ class RealAxis:
                 for image in images:
                     products = [((*k, t), times(x, y)) for k, x in products for t, y in image]
                 for k, x in products:
-                    own = collected.setdefault(k, {})
-                    have = own.get(exponents, (Fraction(0), Fraction(0)))
-                    own[exponents] = (have[0] + x[0], have[1] + x[1])
+                    by_monomial = collected.setdefault(k, {})
+                    have = by_monomial.get(exponents, (Fraction(0), Fraction(0)))
+                    by_monomial[exponents] = (have[0] + x[0], have[1] + x[1])
         return self._gathered(collected, waves)
 
     def _gathered(
         self, collected: Mapping[RealKey, Mapping[tuple[int, ...], Gaussian]], waves: Factored
     ) -> RealSum | None:
-        is_real = all(not y for own in collected.values() for _, y in own.values())
-        is_imaginary = all(not x for own in collected.values() for x, _ in own.values())
+        is_real = all(not y for by_monomial in collected.values() for _, y in by_monomial.values())
+        is_imaginary = all(not x for by_monomial in collected.values() for x, _ in by_monomial.values())
         if not (is_real or is_imaginary):
             return None
         part = 0 if is_real else 1
-        numbers = [x[part] for own in collected.values() for x in own.values() if x[part]]
+        numbers = [x[part] for by_monomial in collected.values() for x in by_monomial.values() if x[part]]
         scale = Fraction(lcm(*(x.denominator for x in numbers)), gcd(*(x.numerator for x in numbers)))
         terms = {}
-        for key, own in collected.items():
-            whole = {m: int(x[part] * scale) for m, x in own.items() if x[part]}
-            if whole:
-                terms[key] = self.ring.context.from_dict(whole)
+        for key, by_monomial in collected.items():
+            integers = {m: int(x[part] * scale) for m, x in by_monomial.items() if x[part]}
+            if integers:
+                terms[key] = self.ring.context.from_dict(integers)
         return RealSum(terms, waves / scale, part)
 
     def _direction(self, dispersion: Dispersion) -> Gaussian:

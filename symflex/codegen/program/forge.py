@@ -59,8 +59,8 @@ class Forge:
         x = len(self.nodes)
         self.nodes.append(node)
         leaves = {tree.Laplace: Depends.S, tree.InverseLaplace: Depends.INVERSE}
-        own = leaves.get(type(node), Depends.PARAMETERS)
-        self.depends.append(reduce(or_, (self.depends[o] for o in self.operands(x)), own))
+        of_leaf = leaves.get(type(node), Depends.PARAMETERS)
+        self.depends.append(reduce(or_, (self.depends[o] for o in self.operands(x)), of_leaf))
         self._numbers[node] = x
         return x
 
@@ -153,10 +153,10 @@ class Forge:
         """Return a quotient."""
         minus_above, numerator = self.signed(above)
         minus_below, denominator = self.signed(below)
-        whole = numerator
+        quotient = numerator
         if not self.is_number(denominator, 1) and not self.is_number(numerator, 0):
-            whole = self.make(tree.Divide, numerator, denominator)
-        return whole if minus_above == minus_below else self.negate(whole)
+            quotient = self.make(tree.Divide, numerator, denominator)
+        return quotient if minus_above == minus_below else self.negate(quotient)
 
     def power(self, base: int, exponent: int) -> int:
         """Return a non-negative integer power; what depends on s is multiplied out, squares first."""

@@ -30,8 +30,8 @@ class CodeNode:
     OPERANDS: ClassVar[tuple[str, ...]] = ()  # the fields that contain operands, or tuples of them
 
     def __init_subclass__(cls) -> None:
-        own = tuple(name for name, kind in cls.__annotations__.items() if "CodeNode" in kind)
-        cls.OPERANDS = own or cls.OPERANDS
+        operands = tuple(name for name, kind in cls.__annotations__.items() if "CodeNode" in kind)
+        cls.OPERANDS = operands or cls.OPERANDS
 
     @property
     def children(self) -> tuple[CodeNode, ...]:
@@ -207,11 +207,11 @@ class RootFactor(CodeNode):
             return _sum(_real(-self.re[0]), self.point, _real(-self.re[1]))
         factors = []
         for sign in (1, -1) if self.is_pair else (1,):
-            high, rest = (
+            high, low = (
                 ComplexNumber(Fraction(re), sign * Fraction(im)) if im else _real(re)
                 for re, im in zip(self.re, self.im, strict=True)
             )
-            factors += [_sum(high, s, rest) for s in ((minus, self.point) if self.is_mirrored else (minus,))]
+            factors += [_sum(high, s, low) for s in ((minus, self.point) if self.is_mirrored else (minus,))]
         return Multiply(tuple(factors)) if len(factors) > 1 else factors[0]
 
 
@@ -344,12 +344,12 @@ class Straight:
         names = {n.name for value in values for n in value.walk() if isinstance(n, Assigned)}
         kept: list[list[Assignment]] = []
         for group in (self.assignments, self.constants):
-            own: list[Assignment] = []
+            of_value: list[Assignment] = []
             for assignment in reversed(group):
                 if assignment.name in names:
-                    own.insert(0, assignment)
+                    of_value.insert(0, assignment)
                     names |= {n.name for n in assignment.value.walk() if isinstance(n, Assigned)}
-            kept.append(own)
+            kept.append(of_value)
         return Straight(tuple(kept[1]), tuple(kept[0]), tuple(values))
 
 

@@ -80,33 +80,33 @@ def _coefficient(forge: Forge, terms: Terms, images: RingValues) -> int:
     """Return a polynomial in parameters."""
     numbers: Terms = {}
     for monomial, integer in terms.items():
-        rest = tuple(0 if i == images.pi else e for i, e in enumerate(monomial))
+        without_pi = tuple(0 if i == images.pi else e for i, e in enumerate(monomial))
         number = forge.constant(integer, monomial[images.pi])
-        numbers[rest] = forge.add([numbers[rest], number]) if rest in numbers else number
+        numbers[without_pi] = forge.add([numbers[without_pi], number]) if without_pi in numbers else number
     return _nest(forge, numbers, images.values)
 
 
 def _nest(forge: Forge, terms: Mapping[Monomial, int], values: Sequence[int]) -> int:
     """Return a sum of products, the generator that most terms share taken out first, and so on inside."""
     common = tuple(map(min, zip(*terms, strict=True)))
-    rest = {tuple(e - c for e, c in zip(m, common, strict=True)): k for m, k in terms.items()}
+    reduced = {tuple(e - c for e, c in zip(m, common, strict=True)): k for m, k in terms.items()}
     outside = [forge.power(v, e) for v, e in zip(values, common, strict=True) if e]
-    if len(rest) == 1:
-        return forge.multiply([*rest.values(), *outside])
-    coefficients = set(rest.values())
+    if len(reduced) == 1:
+        return forge.multiply([*reduced.values(), *outside])
+    coefficients = set(reduced.values())
     if len(coefficients) == 1:
         outside = [coefficients.pop(), *outside]
-        rest = dict.fromkeys(rest, forge.constant(1))
+        reduced = dict.fromkeys(reduced, forge.constant(1))
     summands: list[int] = []
-    while rest:
-        counts = [sum(1 for m in rest if m[i]) for i in range(len(values))]
+    while reduced:
+        counts = [sum(1 for m in reduced if m[i]) for i in range(len(values))]
         most = max(counts)
         if most < 2:  # noqa: PLR2004
-            summands += [_nest(forge, {m: k}, values) for m, k in rest.items()]
+            summands += [_nest(forge, {m: k}, values) for m, k in reduced.items()]
             break
         i = counts.index(most)
-        inside = {m: k for m, k in rest.items() if m[i]}
-        rest = {m: k for m, k in rest.items() if not m[i]}
+        inside = {m: k for m, k in reduced.items() if m[i]}
+        reduced = {m: k for m, k in reduced.items() if not m[i]}
         summands.append(_nest(forge, inside, values))
     return forge.multiply([*outside, forge.add(summands)])
 
@@ -213,8 +213,8 @@ class _Terms:
         content = self.exponents.min(axis=0)
         integer = gcd(*self.coefficients)
         integer = -integer if self.coefficients[0] < 0 else integer
-        rest = _Terms(self.exponents - content, tuple(c // integer for c in self.coefficients))
-        return integer, tuple(content.tolist()), rest
+        primitive = _Terms(self.exponents - content, tuple(c // integer for c in self.coefficients))
+        return integer, tuple(content.tolist()), primitive
 
     def parts(self, variable: int) -> tuple[_Terms, _Terms]:
         """Return the terms with a variable and those without; both exist when there is no content."""
@@ -251,15 +251,15 @@ class _Planner:
 
     def plan(self, terms: _Terms) -> Scaled:
         """Return a polynomial in terms of the steps found so far and those it adds."""
-        integer, monomial, rest = terms.stripped()
-        if len(rest.coefficients) == 1:
+        integer, monomial, primitive = terms.stripped()
+        if len(primitive.coefficients) == 1:
             return Scaled(integer, monomial, -1)
-        key = rest.key
+        key = primitive.key
         if key not in self._positions:
             self._depth += 1
             if self._depth > DEPTH_LIMIT:
                 raise _without_structure()
-            step = self._product(rest) or self._split(rest)
+            step = self._product(primitive) or self._split(primitive)
             self._depth -= 1
             self.steps.append(step)
             self._positions[key] = len(self.steps) - 1
@@ -289,8 +289,10 @@ class _Planner:
     def _cost(self, parts: tuple[_Terms, _Terms]) -> tuple[int, int]:
         """Return how many terms, and generators, a split leaves to do; the first of equals is taken."""
         rests = [part.stripped()[2] for part in parts]
-        new = [rest for rest in rests if rest.key not in self._wanted]
-        return sum(len(rest.coefficients) for rest in new), sum(len(rest.variables()) for rest in new)
+        new = [remaining for remaining in rests if remaining.key not in self._wanted]
+        return sum(len(remaining.coefficients) for remaining in new), sum(
+            len(remaining.variables()) for remaining in new
+        )
 
 
 def _without_structure() -> BudgetError:

@@ -33,13 +33,13 @@ class LocalBasis:
 
     def series(self, solution: int, size: float) -> tuple[Fraction, ...]:
         """Return the coefficients of powers of ``(w x)^step`` in a solution, for exponents up to a size."""
-        whole = [c.get((0, 0), 0) for c in self.coefficients]
+        constants = [c.get((0, 0), 0) for c in self.coefficients]
         derivatives = [int(i == solution) for i in range(self.order)]
         coefficients: list[Fraction] = []
         m = 0
         while m <= solution + self.step or taylor_term(size, m) > SERIES_ERROR:
             if m >= self.order:
-                derivatives.append(-sum(c * derivatives[m - self.order + i] for i, c in enumerate(whole)))
+                derivatives.append(-sum(c * derivatives[m - self.order + i] for i, c in enumerate(constants)))
             if m >= solution and (m - solution) % self.step == 0:
                 coefficients.append(Fraction(derivatives[m], factorial(m)))
             m += 1
@@ -93,8 +93,8 @@ def pair_basis(exponents: Iterable[Sequence[tuple[int, int]]]) -> LocalBasis:
     powers = by_powers(SYMMETRIC, prod((_orbit(a, b) for a, b in orbits), start=SYMMETRIC.constant(1)))
     order = max(powers)
     terms = ((powers[n].terms() if n in powers else ()) for n in range(order))
-    own = tuple({(int(p), int(q)): int(c) for (_, p, q), c in each} for each in terms)
-    return LocalBasis(1, order, own)
+    exact = tuple({(int(p), int(q)): int(c) for (_, p, q), c in each} for each in terms)
+    return LocalBasis(1, order, exact)
 
 
 SYMMETRIC = Ring(("x", "e", "f"))  # x, ``e = lambda_1^2 + lambda_2^2``, ``f = lambda_1^2 lambda_2^2``

@@ -108,15 +108,15 @@ class Site:
             return None
         c0, s = law.characteristic[0], self.ring.context.gen(0)
         power = c0.exponent_of(s)
-        rest = c0.filter(lambda f: f != s) * c0.unit
-        if power != 2 or rest.depends_on(LAPLACE):  # noqa: PLR2004
+        constant = c0.filter(lambda f: f != s) * c0.unit
+        if power != 2 or constant.depends_on(LAPLACE):  # noqa: PLR2004
             return None
         if self.axis is None:
-            square = -rest if law.kind == "wave" else rest / 4
+            square = -constant if law.kind == "wave" else constant / 4
             return self._root(self.value(square)), self.forge.s
         # Here c_0 has the sign opposite to that of rest.
         negative = self.axis.sign(law)
-        square = rest if negative else -rest
+        square = constant if negative else -constant
         if law.kind == "bending" and not negative:
             square = square / 4
         return self._root(self.value(square)), self.forge.s
@@ -240,8 +240,8 @@ class Site:
         for key, value in terms.items():
             inner.setdefault(key[0], {})[key[1:]] = value
         groups: dict[int, list[int]] = {}
-        for first, rest in inner.items():
-            minus, value = self.forge.signed(self._sum(rest, images[1:]))
+        for first, inner_terms in inner.items():
+            minus, value = self.forge.signed(self._sum(inner_terms, images[1:]))
             image = images[0](first)
             groups.setdefault(value, []).append(self.forge.negate(image) if minus else image)
         return self.forge.add([self.forge.multiply([v, self.forge.add(ts)]) for v, ts in groups.items()])
@@ -256,16 +256,16 @@ class Site:
         for j, (a, b) in enumerate(pairs):
             if (i, j) not in scales:
                 continue
-            left = scales[i, j] - (-a if self.grows.get(i) else a)
+            excess = scales[i, j] - (-a if self.grows.get(i) else a)
             if not family.is_circular:
-                shared.append(forge.power(self._decay(i, j), left))
+                shared.append(forge.power(self._decay(i, j), excess))
                 continue
             # exp((-left + j b) q) from exp((-1 + j) q/2) and exp((-1 - j) q/2), or from those of q.
             # No half angles are needed where all exponents that are left are even combinations.
             is_even = all((scales[i, j] - a + b) % 2 == 0 for a, b in self.exponents.get((i, j), ()))
             step = 1 if is_even else 2
             up, down = self._spirals(i, j, step)
-            common = (left - abs(b)) * step // 2
+            common = (excess - abs(b)) * step // 2
             shared.append(forge.power(forge.multiply([up, down]), common))
             one, other = (up, down) if b >= 0 else (down, up)
             rising.append(forge.power(one, abs(b) * step))
@@ -331,8 +331,8 @@ class Site:
                 factors.append(forge.power(self._decay(i, j, step), int((most - a) / step)))
             if b:
                 even, odd = self._oscillation(i, j, step, int(abs(b) / step))
-                own = (even, odd if b > 0 else forge.negate(odd))
-                wave = own if wave is None else self._turned(wave, own)
+                turned = (even, odd if b > 0 else forge.negate(odd))
+                wave = turned if wave is None else self._turned(wave, turned)
             if missing := highest - int(abs(b) / step):
                 factors.append(forge.power(self._half_angle(i, j, step)[2], missing))
         if wave is not None:

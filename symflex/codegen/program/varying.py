@@ -85,7 +85,7 @@ class _Workshop:
         """Make all minors that are in use."""
         used = sorted({m for f in factors for _, product in self.sums.of(f) for m in product})
         for number, (law, length) in enumerate(self.sums.matrices):
-            own = [m for m in used if m.matrix == number]
+            of_matrix = [m for m in used if m.matrix == number]
             calls = ((c.generator, c.expression) for c in self.tf.constants if c.generator in self.ring.index)
             parted = PartedLaw(law, {name: call for name, call in calls if varies_along_x(call)})
             inner = Forge()
@@ -95,12 +95,14 @@ class _Workshop:
             s = self.ring.generator("s")
             bases = [Factored.polynomial(self.ring, s) ** parted.step, *(1 / d for d in parted.divisors)]
             ends = self.site.value(law.start[0]), self.site.length(length)
-            wanted = tuple((m.rows, m.columns) for m in own)
+            wanted = tuple((m.rows, m.columns) for m in of_matrix)
             given = tuple(self.site.value(b) for b in bases)
             row = self.forge.make(FundamentalMinors, *ends, given, parts, parted.places, wanted, tip)
             # After the minors come the logarithms of their scales, by numbers of rows.
             item = partial(self.forge.item, self.forge.label(row, "minors"))
-            self._minors |= {m: (item(i), item(len(own) + len(m.rows) - 1)) for i, m in enumerate(own)}
+            self._minors |= {
+                m: (item(i), item(len(of_matrix) + len(m.rows) - 1)) for i, m in enumerate(of_matrix)
+            }
 
     def _tip(self, parted: PartedLaw, singular: SingularStart) -> tuple[Tip, tuple[Summand, ...]]:
         """Return how finite solutions begin at a singular start, and the parts of B."""
@@ -115,16 +117,16 @@ class _Workshop:
                     raise ModelError(Diagnostic("SF910", f"{message} is not available yet", None, hint))
                 exponents[i] = int(matrix[i][i].unit)
                 matrix[i][i] = matrix[i][i] * 0
-        own = PartedLaw(
+        parted_law = PartedLaw(
             replace(parted.law, matrix=tuple(map(tuple, matrix)), singular=None), parted.functions
         )
         below = [str(d) for d in parted.divisors]
         places = tuple(
             (i, j, singular.orders[i][j], t.power // parted.step, *(int(str(t.divisor) == d) for d in below))
-            for (i, j), summands in own.summands.items()
+            for (i, j), summands in parted_law.summands.items()
             for t in summands
         )
-        return Tip(places, singular.powers, tuple(exponents), singular.free), own.every
+        return Tip(places, singular.powers, tuple(exponents), singular.free), parted_law.every
 
     def _sum(self, factor: fmpz_mpoly) -> tuple[int, int]:
         """Return a factor over its largest term, and the logarithm of that."""

@@ -108,11 +108,11 @@ def choose_programs(
         # Exponents have no formula: the members' equations are solved, but where these are followed along x.
         (tf,) = derive_nested(tf.model, [(tf.output.name, tf.input.name)])
     gauge = _gauge(tf, samples, most)
-    own, programs = _choose(gauge), _real_programs(gauge)
+    chosen, programs = _choose(gauge), _real_programs(gauge)
     first = next(programs, None)
     if first is None or not has_real:
-        return own, None if first is None else own
-    return own, _choose_pieces(chain([first], programs), gauge, "real")
+        return chosen, None if first is None else chosen
+    return chosen, _choose_pieces(chain([first], programs), gauge, "real")
 
 
 def choose_band(

@@ -58,9 +58,9 @@ def python_module(contents: Contents, dialect: Dialect) -> Export:
         )
         function = _Function(member, public, private)
         # A response in complex arithmetic calls what the function of s calls.
-        own = "\n".join(private.functions() if owner == public else [])
-        blocks.append("\n\n\n".join(filter(None, (function.head(), own))) + "\n")
-        code += "\n".join([*function.body(), own, ""])
+        private_functions = "\n".join(private.functions() if owner == public else [])
+        blocks.append("\n\n\n".join(filter(None, (function.head(), private_functions))) + "\n")
+        code += "\n".join([*function.body(), private_functions, ""])
         if isinstance(private, BlockText) and private.program.network is not None:
             solving = private.network(private.program.network)
     if solving is not None:

@@ -177,10 +177,10 @@ class BlockText(PrivateText):
         lines: list[str] = []
         variable = identifiers({"x": "x"}, {*self.dialect.reserved, *self.arguments})["x"]
         for number, minors in enumerate(self.program.minors):
-            own, printer = self._body(minors.along, variable)
+            body, printer = self._body(minors.along, variable)
             texts = ", ".join(printer.print(v) for v in minors.along.values)
             head = self._head(f"_along_{number}_of_{self.name}", [variable, *self.arguments[1:]])
-            lines += [*head, *own, *statement("return", f"[{texts}]", "    "), "", ""]
+            lines += [*head, *body, *statement("return", f"[{texts}]", "    "), "", ""]
         return lines
 
     def _lumped(self, program: tree.Piecewise) -> list[str]:
@@ -189,24 +189,30 @@ class BlockText(PrivateText):
         lines = [f"def _value_of_{self.name}(", *arguments, ") -> NDArray[np.complex128]:"]
         near, far = program.near, program.far
         used = {*self.dialect.reserved, *self.arguments[1:]}
-        own = identifiers({n: n for n in ("value", "limit", "is_far", "inverse")}, used)
-        used |= set(own.values())
+        local_names = identifiers({n: n for n in ("value", "limit", "is_far", "inverse")}, used)
+        used |= set(local_names.values())
         intermediates = identifiers({a.name: a.name for a in (*near.every, *program.late)}, used)
-        printer = NumpyPrinter(self.parameters, intermediates, "s", own["inverse"])
+        printer = NumpyPrinter(self.parameters, intermediates, "s", local_names["inverse"])
         for assignment in near.every:
             lines += printer.assignment(assignment.name, assignment.value, "    ")
         value = printer.print(near.values[0])
         if far is None:
             return [*lines, *statement("return", value if program.varies else f"np.asarray({value})", "    ")]
-        lines += statement(own["value"], value, "    ")
-        lines.append(f"    {own['limit']} = {program.limit!r}")
-        lines.append(f"    {own['is_far']} = np.abs(s) > {own['limit']}")
-        lines.append(f"    if np.any({own['is_far']}):")
-        lines.append(f"        {own['inverse']} = 1.0 / s")
+        lines += statement(local_names["value"], value, "    ")
+        lines.append(f"    {local_names['limit']} = {program.limit!r}")
+        lines.append(f"    {local_names['is_far']} = np.abs(s) > {local_names['limit']}")
+        lines.append(f"    if np.any({local_names['is_far']}):")
+        lines.append(f"        {local_names['inverse']} = 1.0 / s")
         for assignment in program.late:
             lines += printer.assignment(assignment.name, assignment.value, "        ")
-        whole = f"np.where({own['is_far']}, {printer.print(far.values[0])}, {own['value']})"
-        return [*lines, *statement(own["value"], whole, "        "), f"    return {own['value']}"]
+        selected = (
+            f"np.where({local_names['is_far']}, {printer.print(far.values[0])}, {local_names['value']})"
+        )
+        return [
+            *lines,
+            *statement(local_names["value"], selected, "        "),
+            f"    return {local_names['value']}",
+        ]
 
     def _body(self, code: tree.Straight, variable: str) -> tuple[list[str], PythonPrinter]:
         taken = {*self.dialect.reserved, *self.parameters.values(), self.variable, variable, "z"}
@@ -256,9 +262,9 @@ class TracedText(PrivateText):
     def _table(self) -> list[str]:
         program, lines = self.program, [f"_pieces_of_{self.name} = ("]
         places = places_of(program, self.values)
-        for i, (cases, place) in enumerate(zip(cases_of(program), places, strict=True)):
+        for i, (cases, point) in enumerate(zip(cases_of(program), places, strict=True)):
             lines += [
-                f"    (_piece_{i}_of_{self.name}, {place!r}, (",
+                f"    (_piece_{i}_of_{self.name}, {point!r}, (",
                 *(f"        {case!r}," for case in cases),
                 "    )),",
             ]
@@ -273,8 +279,8 @@ class TracedText(PrivateText):
             if (number := number_of(assignment.value, numbers)) is not None:
                 numbers[assignment.name] = number
         is_fixed = self.dialect.has_fixed_sizes and bool(self.program.conditions)
-        own = (self.parameters, names, variable, inverse, self.dialect.space)
-        printer = ArrayPrinter(*own, numbers, is_fixed, self.leading)
+        context = (self.parameters, names, variable, inverse, self.dialect.space)
+        printer = ArrayPrinter(*context, numbers, is_fixed, self.leading)
         lines = [line for a in code.every for line in printer.assignment(a.name, a.value, "    ")]
         if any(inverse in line for line in lines):
             lines = [f"    {inverse} = 1.0 / {variable}", *lines]
@@ -349,8 +355,8 @@ class NumpyPrinter(PythonPrinter):
                 return self.call("scaled_sum", [self.list_of(x) for x in (amplitudes, exponents)])
             case tree.FundamentalMinors(start, length, bases, along, places, wanted):
                 ends = [self.print(start), self.print(length), self.list_of(bases)]
-                rest = (places, wanted, node.beginning)
-                return self.call("fundamental_minors", [self.follows[along], *ends, *map(repr, rest)])
+                arguments = (places, wanted, node.beginning)
+                return self.call("fundamental_minors", [self.follows[along], *ends, *map(repr, arguments)])
         return super().with_lists(node)
 
 
@@ -404,7 +410,12 @@ def in_pieces(program: Piecewise) -> Piecewise:
     if not program.is_lumped:
         return program
     needs = (piece.code.needed(piece.code.values) for piece in program.code)
-    return replace(program, code=tuple(CodePiece(replace(own, values=(*own.values, ONE))) for own in needs))
+    return replace(
+        program,
+        code=tuple(
+            CodePiece(replace(alternative, values=(*alternative.values, ONE))) for alternative in needs
+        ),
+    )
 
 
 def cases_of(program: Piecewise) -> tuple[Cases, ...]:

@@ -459,9 +459,9 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
                 moved = "modes outside the band may move it by more than its standard error"
                 warnings.append(f"{damped} and no sharp trough: {moved}")
             if not low <= abs(modes.omega_z[r, i]) <= high:
-                place = abs(modes.omega_z[r, i]) / (2 * np.pi)
+                at_hz = abs(modes.omega_z[r, i]) / (2 * np.pi)
                 warnings.append(
-                    f"{pair} lies outside the band measured, at {place:.4g} Hz: the data show only its effect"
+                    f"{pair} lies outside the band measured, at {at_hz:.4g} Hz: the data show only its effect"
                 )
     for line in fit.problem.lines:
         spacing = line.measured.spacing_hz

@@ -116,8 +116,8 @@ def _descend(
     def residual(vector: Real) -> list[Values]:
         return _residuals(problem, start.unpack(vector, problem.free), kind)
 
-    def reduced(vector: Real, rest: list[Values]) -> tuple[Real, Real]:
-        return _reduced(problem, start.unpack(vector, problem.free), rest, kind)
+    def reduced(vector: Real, residuals: list[Values]) -> tuple[Real, Real]:
+        return _reduced(problem, start.unpack(vector, problem.free), residuals, kind)
 
     solution, has_converged = search(
         residual, reduced, np.clip(packed, low, high), (low, high), steps, tolerance
@@ -139,10 +139,10 @@ def search(
     scale = np.zeros(x.size)
     damping = FIRST_DAMPING
     with np.errstate(all="ignore"):  # a trial step may be wild; what it leads to is looked at
-        rest = residual(x)
-        cost = _cost(rest)
+        residuals = residual(x)
+        cost = _cost(residuals)
         for _ in range(steps):
-            matrix, right = reduced(x, rest)
+            matrix, right = reduced(x, residuals)
             if not (np.isfinite(matrix).all() and np.isfinite(right).all()):
                 break
             scale = np.maximum(scale, np.linalg.norm(matrix, axis=0))
@@ -168,15 +168,15 @@ def search(
                 damping *= HARDER
             else:
                 return x, True  # no step, however short, lowers the cost
-            x, rest, cost = moved, trial, cost - gained
+            x, residuals, cost = moved, trial, cost - gained
             damping = max(damping * EASIER, LEAST_DAMPING)
             if (is_settled and gained <= tolerance * (cost + gained)) or not cost > 0:
                 return x, True
     return x, False
 
 
-def _cost(rest: list[Values]) -> float:
-    return float(sum(np.vdot(one, one).real for one in rest))
+def _cost(residuals: list[Values]) -> float:
+    return float(sum(np.vdot(one, one).real for one in residuals))
 
 
 def triangle(matrix: Real) -> Real:
@@ -194,13 +194,13 @@ def _step(matrix: Real, right: Real, damped: Real) -> Real:
     return np.asarray(np.linalg.solve(upper[:size, :size], upper[:size, size]) / damped, np.float64)
 
 
-def _reduced(problem: FitProblem, modes: Resonances, rest: list[Values], kind: str) -> tuple[Real, Real]:
+def _reduced(problem: FitProblem, modes: Resonances, residuals: list[Values], kind: str) -> tuple[Real, Real]:
     """Return the linear equations of a step: a triangle for each response, shape (k, p), and their right."""
     size = modes.size(problem.free)
     rows, right = [], []
     for r, slopes in enumerate(_slopes(problem, modes, kind)):
         columns = modes.columns(r, problem.free)
-        upper = triangle(np.column_stack((_parts(slopes), _parts(rest[r]))))
+        upper = triangle(np.column_stack((_parts(slopes), _parts(residuals[r]))))
         wide = np.zeros((upper.shape[0], size))
         wide[:, columns] = upper[:, :-1]
         rows.append(wide)
@@ -273,13 +273,13 @@ def widened(problem: FitProblem, refined: Refined) -> Refined:
     crosses, squares, pulls = [], [], []
     for r, slopes in enumerate(_slopes(problem, modes, "complex")):
         line, columns = problem.lines[r], modes.columns(r, problem.free)
-        place, damping = np.abs(modes.omega_z[r]), np.abs(modes.zeta_z[r])
+        frequency, damping = np.abs(modes.omega_z[r]), np.abs(modes.zeta_z[r])
         low, high = line.omega[[0, -1]]
-        outside = (place < low) | ((place > high) | (damping > FLAT)) & (place < np.inf)
-        place, damping = place[outside], damping[outside]
+        outside = (frequency < low) | ((frequency > high) | (damping > FLAT)) & (frequency < np.inf)
+        frequency, damping = frequency[outside], damping[outside]
         bends = []
         for end, sign in ((low, -1), (high, 1)):
-            near = np.minimum(place / end, end / place)
+            near = np.minimum(frequency / end, end / frequency)
             even, odd = np.max(near**2, initial=0.0), 2j * np.max(damping * near, initial=0.0)
             ratio = (line.omega / end) ** sign
             bends += [even * ratio**4, even * ratio**6, odd * ratio**3, odd * ratio**5]
@@ -287,16 +287,16 @@ def widened(problem: FitProblem, refined: Refined) -> Refined:
         bent = NEXT_TERM * np.column_stack(bends) * (values / deviation)[:, np.newaxis]
         if line.measured.cut_off_s:
             bent = np.column_stack((bent, _ends(line, modes, values) / deviation[:, np.newaxis]))
-        rest = line.rest(values) / deviation
+        residuals = line.rest(values) / deviation
         if line.parts == 1:
             bent = (bent / np.exp(1j * np.angle(values))[:, np.newaxis]).real.astype(np.complex128)
         normal[np.ix_(columns, columns)] += (np.conj(slopes).T @ slopes).real
-        gradient[columns] += (np.conj(slopes).T @ rest).real
+        gradient[columns] += (np.conj(slopes).T @ residuals).real
         cross = np.zeros((size, bent.shape[1]))
         cross[columns] = (np.conj(slopes).T @ bent).real
         crosses.append(cross)
         squares.append((np.conj(bent).T @ bent).real)
-        pulls.append((np.conj(bent).T @ rest).real)
+        pulls.append((np.conj(bent).T @ residuals).real)
     covariance = refined.covariance
     if covariance is None or not np.isfinite(normal).all():
         return refined

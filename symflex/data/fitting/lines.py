@@ -67,7 +67,7 @@ def wild_lines(omega: Real, values: Complex) -> Whole:
         without = off(inner + beside, inner + low, inner + high)
         others[2:-2] = np.maximum(others[2:-2], without)
     for places in ((0, 1, 2, 3), (1, 0, 2, 3), (n - 1, n - 2, n - 3, n - 4), (n - 2, n - 1, n - 3, n - 4)):
-        line, *near = (np.array([place]) for place in places)
+        line, *near = (np.array([index]) for index in places)
         others[line] = np.maximum(others[line], off(near[0], near[1], near[2]))
     return np.flatnonzero((alone > WILD * others) & (alone > LEAST_OFF))
 
@@ -83,8 +83,8 @@ def step_line(omega: Real, values: Complex) -> int | None:
     size = np.abs(middle.real - others.real.mean(axis=1)) / (others.real.std(axis=1) + least)
     turn = np.abs(middle.imag - others.imag.mean(axis=1)) / (others.imag.std(axis=1) + least)
     size[np.median(np.abs(others.real), axis=1) == 0] = 0.0  # rounded numbers, which have steps of their own
-    place = int(np.argmax(size))
-    return place + STEP_REACH if size[place] > STEP and turn[place] < STEP / 2 else None
+    index = int(np.argmax(size))
+    return index + STEP_REACH if size[index] > STEP and turn[index] < STEP / 2 else None
 
 
 def telling_lines(omega: Real, values: Complex, deviation: Real, most: int) -> Whole:
@@ -133,9 +133,9 @@ def written_step(numbers: Real) -> Real:
     step_found: Real = np.zeros(size.size)
     least = SMALLEST * max(float(np.max(size, initial=0.0)), np.finfo(float).tiny)
     decade = np.floor(np.log10(np.maximum(size, least)) + EXACT) + 1
-    for place in (decade, np.full(size.size, float(MOST_DIGITS))):  # significant digits, and decimals
-        for digits in range(1, 2 * MOST_DIGITS if place is not decade else MOST_DIGITS + 1):
-            step = 10 ** (place - digits)
+    for decimals in (decade, np.full(size.size, float(MOST_DIGITS))):  # significant digits, and decimals
+        for digits in range(1, 2 * MOST_DIGITS if decimals is not decade else MOST_DIGITS + 1):
+            step = 10 ** (decimals - digits)
             if np.all(np.abs(size - step * np.round(size / step)) <= EXACT * size + least):
                 step_found = np.maximum(step_found, step)
                 break

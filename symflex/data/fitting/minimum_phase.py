@@ -137,9 +137,11 @@ class _PhaseSearch:
         self.noise: Real = np.zeros(size) if self.line.deviation is None else self.line.deviation
         self.weight: Real = 1 / np.hypot(self.noise, CAP)
         self.wanted: Real = np.log(np.abs(self.line.measured.values))
-        own = fitted.one(response)
-        mirrored = own.minimum_phase(np.ones(1, np.bool_))
-        self.mirrored = replace(mirrored, zeta_z=np.maximum(mirrored.zeta_z, LOWEST_DAMPING), gain=own.gain)
+        of_response = fitted.one(response)
+        mirrored = of_response.minimum_phase(np.ones(1, np.bool_))
+        self.mirrored = replace(
+            mirrored, zeta_z=np.maximum(mirrored.zeta_z, LOWEST_DAMPING), gain=of_response.gain
+        )
 
     def level(self, model: Complex) -> Real:
         """Return the logarithm of the model's magnitude over the measured one."""
@@ -181,15 +183,15 @@ class _PhaseSearch:
             aside = np.angle(model / self.line.measured.values) * self.weight
             return [np.asarray(level + 1j * aside, np.complex128)]
 
-        def reduced(vector: Real, rest: list[Values]) -> tuple[Real, Real]:
+        def reduced(vector: Real, residuals: list[Values]) -> tuple[Real, Real]:
             now = resonances(vector)
             model, by = self.single.linearised(now, 0)
             by = by / model[:, None]
             by[:, damping] *= now.zeta_z[0, now.has_zeros[0]]
             if kind == "lag":
                 by = np.column_stack((by, -1j * turn))
-            whole = np.column_stack((by * self.weight[:, None], rest[0]))
-            parts = whole.real if kind == "magnitude" else np.concatenate((whole.real, whole.imag))
+            stacked = np.column_stack((by * self.weight[:, None], residuals[0]))
+            parts = stacked.real if kind == "magnitude" else np.concatenate((stacked.real, stacked.imag))
             upper = triangle(parts)
             return upper[:, :-1], upper[:, -1]
 

@@ -177,8 +177,8 @@ def _solved(system: _ResponseSystem, logarithms: Real, correlation: float) -> _S
         turn = system.motion.scale * (poles - poles.conj()) / poles**system.motion.derivative
         # The real parts of the constants, as combinations of the solution.
         mix = np.concatenate([np.diag(turn.real), -np.diag(turn.imag), np.zeros((2, n))]) / size[:, None]
-        rest = system.values - matrix @ solution
-        spread = float(rest @ rest) / max(rest.size - solution.size, 1) * correlation
+        residuals = system.values - matrix @ solution
+        spread = float(residuals @ residuals) / max(residuals.size - solution.size, 1) * correlation
         noise = np.asarray(mix.T @ (inverse @ inverse.T) @ mix * spread, np.float64)
         return (solution[:n] + 1j * solution[n : 2 * n]) * turn, noise
 

@@ -62,11 +62,11 @@ def with_noise(problem: FitProblem, count: int | None, most_lines: int) -> FitPr
         values, parameters, poles = generous_fit(thin, pairs)
         if parameters * LINES_PER_PARAMETER > size and best is not None:
             break
-        rest = 0.0
+        misfit = 0.0
         for v, line in zip(values, thin.lines, strict=True):
             scale = 1.0 if line.deviation is None else line.deviation
-            rest += float(np.sum(np.abs(line.rest(v) / np.abs(line.measured.values) / scale) ** 2))
-        score = size * np.log(max(rest, LEAST**2 * size)) + parameters * np.log(size)
+            misfit += float(np.sum(np.abs(line.rest(v) / np.abs(line.measured.values) / scale) ** 2))
+        score = size * np.log(max(misfit, LEAST**2 * size)) + parameters * np.log(size)
         if best is None or score < best[0]:
             best, worse = (float(score), pairs, poles), 0
         else:
@@ -91,8 +91,8 @@ def estimated(problem: FitProblem, values: list[Complex], parameters: int) -> Fi
             size = np.abs(line.measured.values)
             deviation = np.maximum(np.sqrt(variance) / size, LEAST)
         lines.append(replace(line, deviation=deviation))
-        rest = np.abs(line.rest(model)) / (deviation * np.abs(line.measured.values))
-        cost += float(np.sum(rest**2))
+        residuals = np.abs(line.rest(model)) / (deviation * np.abs(line.measured.values))
+        cost += float(np.sum(residuals**2))
     return replace(
         problem, lines=tuple(lines), is_noise_estimated=True, reference=StructurelessFit(cost, parameters)
     )

@@ -43,9 +43,9 @@ def strange(omega_z: Real, zeta_z: Real, real_z: Real, low: float, high: float) 
     """Return how many zeros, or pairs of them, are hardly those of a structure seen in this band."""
     # They lie outside it, or are two real ones of the same sign: such zeros make up for noise and for a wrong
     # power of s. A real one far outside counts twice: it is a power of s, or a gain, and rounded numbers.
-    place = np.abs(omega_z)
-    outside = np.isfinite(place) & ((place < low) | (place > high))
-    pairs = outside | (np.isfinite(place) & (np.abs(zeta_z) > MOST_DAMPED))
+    frequency = np.abs(omega_z)
+    outside = np.isfinite(frequency) & ((frequency < low) | (frequency > high))
+    pairs = outside | (np.isfinite(frequency) & (np.abs(zeta_z) > MOST_DAMPED))
     corner = np.abs(real_z[np.isfinite(real_z)])
     ends = ((low, high), (low / FAR_OUTSIDE, high * FAR_OUTSIDE))
     return int(pairs.sum() + sum(np.sum((corner < a) | (corner > b)) for a, b in ends))
@@ -72,8 +72,8 @@ def _together(poles: Complex, chosen: list[Numerator]) -> tuple[float, Resonance
     first, second = corners[: corners.size // 2 * 2 : 2], corners[1::2]
     centre = np.sqrt(first * second)
     omega_p, zeta_p = np.append(omega, centre), np.append(zeta, (first + second) / (2 * centre))
-    own = ("omega_z", "zeta_z", "gain", "delay", "slope", "real_z")
-    arrays = {name: np.array([getattr(one, name) for one in chosen]) for name in own}
+    per_response = ("omega_z", "zeta_z", "gain", "delay", "slope", "real_z")
+    arrays = {name: np.array([getattr(one, name) for one in chosen]) for name in per_response}
     modes = Resonances(omega_p, zeta_p, real_p=corners[corners.size // 2 * 2 :], **arrays)
     return sum(one.bic for one in chosen), modes.ordered()
 
@@ -85,7 +85,7 @@ def _numerators(problem: FitProblem, response: int, poles: Complex, most: int) -
     begun = problem.delays[response]
     if not problem.free.delay:
         solved = full.solved(shapes, begun)
-        likely = np.argsort(full.bic(np.array([rest for rest, _ in solved]), shapes))[:MOST_POLISHED]
+        likely = np.argsort(full.bic(np.array([misfit for misfit, _ in solved]), shapes))[:MOST_POLISHED]
         polished = [(solved[i][0], begun, shapes[i], solved[i][1]) for i in likely]
     else:
         # Poles hardly depend on the delay they were found with; what stands over them does.
@@ -93,16 +93,16 @@ def _numerators(problem: FitProblem, response: int, poles: Complex, most: int) -
         turn = 2 * np.pi / float(np.max(full.s.imag))
         tried = begun + turn * np.arange(-TURNS, TURNS, 1 / PER_TURN)
         tried = np.unique(np.maximum(tried, 0.0))
-        table = np.array([[rest for rest, _ in thin.solved(shapes, float(one))] for one in tried])
+        table = np.array([[misfit for misfit, _ in thin.solved(shapes, float(one))] for one in tried])
         least = table.min(axis=0)
         likely = np.argsort(thin.bic(least, shapes))[:MOST_POLISHED]
         polished = [full.polished(shapes[i], float(tried[np.argmin(table[:, i])])) for i in likely]
     every = []
-    for rest, delay, shape, coefficients in polished:
+    for misfit, delay, shape, coefficients in polished:
         zeros = _pairs(coefficients, full.middle, order // 2)
         if zeros is not None:
             gain = float(coefficients[0]) / full.middle ** shape[0]
-            bic = float(full.bic(np.array([rest]), [shape])[0])
+            bic = float(full.bic(np.array([misfit]), [shape])[0])
             bic += STRANGE * strange(zeros[0], zeros[1], np.array(zeros[2]), *problem.band)
             bic += STRANGE * (not problem.has_base and sum(shape) > order)  # it grows beyond the band
             every.append(Numerator(bic, shape[0], *zeros, gain, delay))
@@ -136,17 +136,17 @@ class _System:
     def _at(self, shape: tuple[int, int]) -> npt.NDArray[np.intp]:
         return np.arange(shape[0] - self.first, shape[0] - self.first + shape[1] + 1)
 
-    def bic(self, rest: Real, shapes: list[tuple[int, int]]) -> Real:
+    def bic(self, misfit: Real, shapes: list[tuple[int, int]]) -> Real:
         """Return the BIC of sums of squares, one for each power of s and number of zeros."""
         size = self.parts * self.size
         parameters = np.array([zeros + 1 for _, zeros in shapes])
-        return np.asarray(size * np.log(rest / size + 1e-9) + parameters * np.log(size), np.float64)
+        return np.asarray(size * np.log(misfit / size + 1e-9) + parameters * np.log(size), np.float64)
 
     def solved(self, shapes: list[tuple[int, int]], delay: float) -> list[tuple[float, Real]]:
         """Return for each shape the sum of squares and the coefficients, with one factorisation for all."""
         target = self.weight * self.values * np.exp(self.s * delay)
-        whole = np.concatenate((self.columns, target[:, None]), axis=1)
-        stacked = np.concatenate((whole.real, whole.imag))
+        extended = np.concatenate((self.columns, target[:, None]), axis=1)
+        stacked = np.concatenate((extended.real, extended.imag))
         norms = np.maximum(np.linalg.norm(stacked, axis=0), np.finfo(float).tiny)
         upper = triangle(stacked / norms)
         return [self._coefficients(upper, norms, shape) for shape in shapes]
@@ -160,8 +160,8 @@ class _System:
             right = right - upper[:, at[0]] * norms[at[0]] * given[0] / norms[-1]
             at = at[1:]
         solution = np.linalg.lstsq(upper[:, at], right, rcond=None)[0]
-        rest = float(np.sum((right - upper[:, at] @ solution) ** 2)) * float(norms[-1]) ** 2
-        return rest, np.concatenate((given, solution * norms[-1] / norms[at]))
+        misfit = float(np.sum((right - upper[:, at] @ solution) ** 2)) * float(norms[-1]) ** 2
+        return misfit, np.concatenate((given, solution * norms[-1] / norms[at]))
 
     def polished(self, shape: tuple[int, int], delay: float) -> tuple[float, float, tuple[int, int], Real]:
         """Return sum of squares, delay, shape and coefficients after a few steps of the delay."""
@@ -174,8 +174,8 @@ class _System:
             turned = -self.weight * self.values * np.exp(self.s * delay) * self.s
             matrix = np.concatenate((self.columns[:, at], turned[:, None]), axis=1)
             delay = max(delay + float(solved_real(matrix, target)[-1]), 0.0)
-        ((rest, coefficients),) = self.solved([shape], delay)
-        return rest, delay, shape, coefficients
+        ((misfit, coefficients),) = self.solved([shape], delay)
+        return misfit, delay, shape, coefficients
 
 
 def _pairs(coefficients: Real, middle: float, count: int) -> tuple[Real, Real, float] | None:

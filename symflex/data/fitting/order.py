@@ -65,10 +65,10 @@ class Stages:
     """The parts of a fit, each of which ends with a share of the time left, so that there is a result."""
 
     def __init__(self) -> None:
-        whole = entered_budget()
+        entered = entered_budget()
         # From now on: programs that start, and files that are read, have had their part of the time.
-        self.budget = replace(whole, seconds=whole.left)
-        self.untimed = replace(whole, seconds=None)
+        self.budget = replace(entered, seconds=entered.left)
+        self.untimed = replace(entered, seconds=None)
         self.is_cut = False  # whether one of them did not end in time
 
     def within(self, share: float, compute: Callable[[], Result], otherwise: Callable[[], Result]) -> Result:
@@ -420,8 +420,8 @@ def _without_zeros(now: Resonances, r: int, i: int | None, low: float, high: flo
     """Return a fit without a pair of zeros, or the real one, outside the band; ``None`` if it is inside."""
     omega_z, real_z = now.omega_z.copy(), now.real_z.copy()
     gain, slope = now.gain.copy(), now.slope.copy()
-    zeros, place = (real_z, r) if i is None else (omega_z, (r, i))
-    size, twice = abs(zeros[place]), 0.0 if i is None else 2 * now.zeta_z[r, i]
+    zeros, index = (real_z, r) if i is None else (omega_z, (r, i))
+    size, twice = abs(zeros[index]), 0.0 if i is None else 2 * now.zeta_z[r, i]
     is_apart = size < low * abs(twice) and abs(twice) * size > high  # two real ones
     if not np.isfinite(size) or (low <= size <= high and not is_apart):
         return None
@@ -434,7 +434,7 @@ def _without_zeros(now: Resonances, r: int, i: int | None, low: float, high: flo
     elif size < low:
         slope[r] += 2
         gain[r] *= np.sign(omega_z[r, i]) / size**2
-    zeros[place] = np.inf
+    zeros[index] = np.inf
     return replace(now, omega_z=omega_z, real_z=real_z, gain=gain, slope=slope).ordered()
 
 
@@ -553,11 +553,11 @@ def with_own_noise(candidate: Candidate, problem: FitProblem) -> tuple[Candidate
         alike = tuple(replace(line, deviation=None) for line in problem.lines)
         refined = refine_directly(replace(problem, lines=alike), refined.resonances, 2 * STEPS)
     values = [problem.values(refined.resonances, r) for r in range(len(problem.lines))]
-    own = estimated(problem, values, refined.parameters)
-    again = refine_directly(own, refined.resonances, 2 * STEPS)
-    if _failure(own, again) is not None:
+    own_noise = estimated(problem, values, refined.parameters)
+    again = refine_directly(own_noise, refined.resonances, 2 * STEPS)
+    if _failure(own_noise, again) is not None:
         return candidate, problem
-    return replace(candidate, refined=again), own
+    return replace(candidate, refined=again), own_noise
 
 
 def refitted(candidate: Candidate, problem: FitProblem, steps: int = 2 * STEPS) -> Candidate:

@@ -124,7 +124,7 @@ class Resonances:
         """Return the same product with poles and zeros in ascending order, in which it has one spelling."""
         poles = np.argsort(self.omega_p, kind="stable")
         zeros = np.argsort(np.abs(self.omega_z), axis=1, kind="stable")
-        omega_z, zeta_z = (np.take_along_axis(own, zeros, 1) for own in (self.omega_z, self.zeta_z))
+        omega_z, zeta_z = (np.take_along_axis(array, zeros, 1) for array in (self.omega_z, self.zeta_z))
         omega_p, zeta_p = self.omega_p[poles], self.zeta_p[poles]
         return replace(self, omega_p=omega_p, zeta_p=zeta_p, omega_z=omega_z, zeta_z=zeta_z)
 
@@ -163,7 +163,7 @@ class Resonances:
         # Real zeros of opposite sign, mirrored, are an overdamped pair.
         zeta = np.where(self.omega_z < 0, np.hypot(1, self.zeta_z), np.abs(self.zeta_z))
         sizes = {
-            name: np.where(which, np.abs(own := getattr(self, name)), own) for name in ("real_z", "gain")
+            name: np.where(which, np.abs(array := getattr(self, name)), array) for name in ("real_z", "gain")
         }
         omega_z = np.where(which[:, None], np.abs(self.omega_z), self.omega_z)
         return replace(self, omega_z=omega_z, zeta_z=np.where(which[:, None], zeta, self.zeta_z), **sizes)
@@ -208,9 +208,9 @@ class Resonances:
     def own_places(self, free: Free) -> Iterator[tuple[str, tuple[int, Mask] | slice, slice]]:
         """Yield for every response its parameters: name, place in the array of it, place in the vector."""
         for r, shown in enumerate(self.has_zeros):
-            for name, place in self.places(r, free).items():
-                single = slice(r, r + place.stop - place.start)  # empty where it is not fitted
-                yield name, (r, shown) if name in ("omega_z", "zeta_z") else single, place
+            for name, columns in self.places(r, free).items():
+                single = slice(r, r + columns.stop - columns.start)  # empty where it is not fitted
+                yield name, (r, shown) if name in ("omega_z", "zeta_z") else single, columns
 
     def _own(self, response: int, free: Free) -> int:
         shown = int(self.has_zeros[response].sum())
@@ -219,8 +219,8 @@ class Resonances:
     def columns(self, response: int, free: Free) -> Whole:
         """Return which packed parameters a response depends on: those of the poles, and its own."""
         first = self.places(response, free)["omega_z"].start
-        own = np.arange(first, first + self._own(response, free))
-        return np.concatenate((np.arange(self.shared()), own))
+        of_response = np.arange(first, first + self._own(response, free))
+        return np.concatenate((np.arange(self.shared()), of_response))
 
     def size(self, free: Free) -> int:
         """Return how many parameters there are."""
@@ -240,13 +240,13 @@ class Resonances:
     def unpack(self, vector: Real, free: Free) -> Resonances:
         """Return the resonances of a vector as :meth:`pack` makes it; gains keep their sign."""
         n = self.count
-        own: dict[str, Real] = {name: getattr(self, name).copy() for name in UNITS}
-        for name, index, place in self.own_places(free):
-            signs, found = np.sign(own[name][index]), vector[place]
-            own[name][index] = signs * np.exp(found) if name in LOGARITHMIC else UNITS[name] * found
+        arrays: dict[str, Real] = {name: getattr(self, name).copy() for name in UNITS}
+        for name, index, columns in self.own_places(free):
+            signs, found = np.sign(arrays[name][index]), vector[columns]
+            arrays[name][index] = signs * np.exp(found) if name in LOGARITHMIC else UNITS[name] * found
         shared = {"omega_p": vector[:n], "zeta_p": vector[n : 2 * n], "real_p": vector[2 * n : self.shared()]}
-        own |= {name: np.exp(logarithms) for name, logarithms in shared.items()}
-        return replace(self, **own)  # type: ignore[arg-type]
+        arrays |= {name: np.exp(logarithms) for name, logarithms in shared.items()}
+        return replace(self, **arrays)  # type: ignore[arg-type]
 
     def log_derivatives(self, response: int, omega: Values, free: Free) -> Complex:
         """Return d ln(factor) by the packed parameters that :meth:`columns` names, shape (k, p)."""

@@ -39,17 +39,17 @@ COPIED = ("parameters", "definitions", "elements", "signals", "blocks", "fields"
 def fit_specification(fit: ResonanceFit, folder: str | Path, loop: str | None = None) -> str:
     """Return the specification of a fit that will stand in a folder, with a loop whose gain has this name."""
     bases = tuple(dict.fromkeys(Path(base.path) for base in fit.bases if base.path))
-    allowed = tuple(place for base in fit.bases for place in base.folders)
+    allowed = tuple(folder_allowed for base in fit.bases for folder_allowed in base.folders)
     taken = {name for base in fit.bases for name in base.taken}
     ways: list[Mapping[str, object] | None] = [None]
     if loop is not None and (not _is_name(loop) or loop in {*RESERVED, *taken}):
         raise refused(f"'{loop[:64]}' is not a valid name for the gain of a loop", "say K")
     if len(bases) == 1 and loop is None:  # a copied base has inputs of its own, which no signal drives
         source = read(bases[0])
-        whole = tomllib.loads(source.text, parse_float=Decimal)
-        own = fit.bases[0].tf.split("/")[1]
+        base_spec = tomllib.loads(source.text, parse_float=Decimal)
+        driven = fit.bases[0].tf.split("/")[1]
         # Other inputs of the base are left out, unless something there needs them.
-        ways += [whole | {"inputs": {own: whole["inputs"][own]}}, whole]
+        ways += [base_spec | {"inputs": {driven: base_spec["inputs"][driven]}}, base_spec]
         words = taken | set(re.findall(r"\w+", source.text))
     # A file that needs --allow-outside is the last resort: where the base itself needs it.
     for outside in ((), allowed):
@@ -103,8 +103,8 @@ def _written(
             if not base.path and (unit := fit.measured[r].unit) not in ("", "1"):
                 value = f"{modes.gain[r]:.{DIGITS}g} ({unit})" + (f"*s^({base.slope})" if base.slope else "")
             parameters[parts[-1]] = {"value": value, "assume": "real", "doc": doc}
-        for own, more, factors in (_pairs(fit, r, errors, names), _beside(fit, r, errors, names)):
-            parameters |= own
+        for declared, more, factors in (_pairs(fit, r, errors, names), _beside(fit, r, errors, names)):
+            parameters |= declared
             blocks |= more
             parts += factors
         if not base.path and base.slope:
@@ -247,8 +247,8 @@ def _with_copy(
         for key, entry in section.items():
             if name == "blocks" and isinstance(entry, dict) and entry.get("type") == "model":
                 entries[key] = entry | {"spec": _relative(origin / str(entry["spec"]), folder)}
-        own = merged.get(name)
-        merged[name] = (own if isinstance(own, dict) else {}) | entries
+        declared = merged.get(name)
+        merged[name] = (declared if isinstance(declared, dict) else {}) | entries
     return merged | {"inputs": copied["inputs"]}
 
 

@@ -230,12 +230,12 @@ def _conspicuous(problem: FitProblem, poles: Complex, order: int) -> Complex:
     # A smooth rise is not a resonance, however large it is.
     size = size * np.minimum(1.0, LARGEST_START / (-poles.real / np.abs(poles)))
     chosen: list[int] = []
-    left = order
+    remaining = order
     for i in np.argsort(-size, kind="stable").tolist():
-        if _widths(poles)[i] <= left:
+        if _widths(poles)[i] <= remaining:
             chosen.append(i)
-            left -= int(_widths(poles)[i])
-    missing = [-np.exp(np.mean(np.log(problem.band)))] * left
+            remaining -= int(_widths(poles)[i])
+    missing = [-np.exp(np.mean(np.log(problem.band)))] * remaining
     return np.append(poles[np.sort(chosen)], np.array(missing, np.complex128))
 
 
@@ -373,9 +373,9 @@ def _aaa_poles(omega: Values, values: Complex, degree: int) -> list[tuple[float,
     while len(chosen) < degree + 1 and free.sum() > 2 * degree:
         # Points enter with their mirror images, so that poles come in pairs.
         worst = int(np.argmax(np.where(free, np.abs(data - approximant) / np.abs(data), -1)))
-        for place in (worst, (worst + omega.size) % points.size):
-            free[place] = False
-            chosen.append(place)
+        for index in (worst, (worst + omega.size) % points.size):
+            free[index] = False
+            chosen.append(index)
         support, at = points[chosen], data[chosen]
         cauchy = 1 / (points[free, None] - support)
         loewner = (data[free, None] - at) * cauchy / np.abs(data[free, None])

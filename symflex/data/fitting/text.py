@@ -89,8 +89,8 @@ def _residual_terms(fit: ResonanceFit) -> list[tuple[str, ...]]:
     rows = []
     for i in np.flatnonzero(~fit.modes & (modes.zeta_p < 1)).tolist():
         row = _row("", modes.omega_p[i], errors.omega_p[i], modes.zeta_p[i], errors.zeta_p[i])
-        place = "below the band" if modes.omega_p[i] < low else "above the band"
-        rows.append((*row[:-1], "no peak" if low <= modes.omega_p[i] <= high else place))
+        side = "below the band" if modes.omega_p[i] < low else "above the band"
+        rows.append((*row[:-1], "no peak" if low <= modes.omega_p[i] <= high else side))
     for corner, error in fit.real_poles():
         hertz, hertz_error = corner / (2 * pi), error / (2 * pi)
         rows.append(("", _shown(hertz, hertz_error), _error(hertz_error), "", "", "real"))
@@ -307,14 +307,14 @@ def _accuracy(fit: ResonanceFit) -> str:
 
 def _phase_words(test: PhaseTest, fit: ResonanceFit, r: int) -> str:
     low, high = fit.measured[r].frequency_hz[[0, -1]]
-    own = " (the base with its own phase)" if fit.bases[r].path else ""
+    base = " (the base with its own phase)" if fit.bases[r].path else ""
     if test.verdict == "assumed":
         return "magnitude only: minimum phase is assumed"
     if not test.bands and not test.is_minimum_phase:
         return "undetermined: noise hides the phase" if test.magnitude_db else "there was no time for it"
     if not test.bands:
         return (
-            f"minimum phase: the measured phase is that of a minimum-phase fit to the magnitude alone{own}, "
+            f"minimum phase: the measured phase is that of a minimum-phase fit to the magnitude alone{base}, "
             f"within 10 degrees or the noise, from {low:.4g} to {high:.4g} Hz"
         )
     worst = max(test.bands, key=lambda band: abs(band.worst_degrees))
@@ -324,7 +324,7 @@ def _phase_words(test: PhaseTest, fit: ResonanceFit, r: int) -> str:
     off = f"{worst.worst_degrees:+.0f} degrees at {worst.worst_hz:.4g} Hz"
     parts = f"the measured phase is off by {off}, {where}"
     if test.verdict == "nonminimum":
-        return f"not minimum phase: {parts}, from a minimum-phase fit to the magnitude alone{own}"
+        return f"not minimum phase: {parts}, from a minimum-phase fit to the magnitude alone{base}"
     if test.is_minimum_phase:
         return f"minimum phase: such a function fits magnitude and phase; from the magnitude alone, {parts}"
     if test.with_phase is not None:
@@ -332,5 +332,5 @@ def _phase_words(test: PhaseTest, fit: ResonanceFit, r: int) -> str:
             f"undetermined: {parts}, unless a sensor, a delay, or poles or zeros above the band add a lag of "
             f"{1e3 * test.lag_s:.3g} ms"
         )
-    left = f"{test.magnitude_db:.2g} dB rms of the magnitude"
-    return f"undetermined: {parts}, and the minimum-phase fit leaves {left}"
+    misfit = f"{test.magnitude_db:.2g} dB rms of the magnitude"
+    return f"undetermined: {parts}, and the minimum-phase fit leaves {misfit}"

@@ -183,7 +183,7 @@ def read_netcdf(data: bytes, items: int) -> tuple[Attributes, dict[str, Variable
     dimensions = [(_name(reader), reader.integer("i4")) for _ in range(_count(reader, _DIMENSION, items))]
     attributes = _attributes(reader, items)
     variables: dict[str, Variable] = {}
-    left = len(data)
+    remaining = len(data)
     for _ in range(_count(reader, _VARIABLE, items)):
         name = _name(reader)
         numbers = [reader.integer("i4") for _ in range(_checked(reader.integer("i4"), items))]
@@ -198,8 +198,8 @@ def read_netcdf(data: bytes, items: int) -> tuple[Attributes, dict[str, Variable
         body = ByteReader(data, ">")
         body.take(begin)
         values = body.numbers(kind, shape)
-        left -= values.nbytes
-        require(left >= 0, "variables overlap")
+        remaining -= values.nbytes
+        require(remaining >= 0, "variables overlap")
         variables[name] = tuple(dimensions[number][0] for number in numbers), values, about
     return attributes, variables
 

@@ -195,7 +195,7 @@ def responses_of(arrays: Arrays, name: str, stem: str, asked: str = "") -> tuple
     for key, array in arrays.items():
         scope, _, last = key.rpartition(".")
         scopes.setdefault(scope, {})[last.lower()] = array
-    holding = [scope for scope, own in scopes.items() if _has_values(own)]
+    holding = [scope for scope, arrays_within in scopes.items() if _has_values(arrays_within)]
     responses: list[MeasuredResponse] = []
     for scope in holding:
         parts = scope.split(".") if scope else []
@@ -220,8 +220,8 @@ def _with_axes(arrays: Arrays) -> Arrays:
     tables = {k: a for k, a in tables.items() if _meaning(k.rpartition(".")[2].lower()).kind == "complex"}
     beside = {k: a for k, a in tables.items() if a.dtype.kind == "c" and _goes_up(a[:, 0])}
     if len(beside) > 1:  # values beside their frequencies; what is called G is a spectrum where others are H
-        own = {k: a for k, a in beside.items() if k.lower().startswith("h")} or beside
-        return {"f": next(iter(own.values()))[:, 0].real} | {k: a[:, 1] for k, a in own.items()}
+        horizontal = {k: a for k, a in beside.items() if k.lower().startswith("h")} or beside
+        return {"f": next(iter(horizontal.values()))[:, 0].real} | {k: a[:, 1] for k, a in horizontal.items()}
     pairs = {k: a for k, a in tables.items() if a.dtype.kind in "fi" and np.any(a < 0)}
     with_axes |= {k: np.array(a, np.float64, order="C").view(np.complex128)[:, 0] for k, a in pairs.items()}
     ends = [with_axes[k] for k in ("f_start", "df") if k in with_axes]
@@ -257,8 +257,8 @@ def _renamed(arrays: Arrays, asked: str, name: str) -> dict[str, Array]:
     return renamed
 
 
-def _has_values(own: Arrays) -> bool:
-    kinds = {_meaning(key).kind for key, array in own.items() if array.dtype.kind in "fciub"}
+def _has_values(arrays: Arrays) -> bool:
+    kinds = {_meaning(key).kind for key, array in arrays.items() if array.dtype.kind in "fciub"}
     return "complex" in kinds or {"real", "imaginary"} <= kinds or {"magnitude", "phase"} <= kinds
 
 
@@ -407,9 +407,9 @@ def _from_unknown(arrays: Arrays, name: str, stem: str) -> tuple[MeasuredRespons
         alone = WITHOUT_AXIS if complexes else f"{timed}; {WITHOUT_AXIS}"
         raise DataError(Diagnostic("SF602", message, None, hint if rising else alone))
     ((f, h),) = pairs
-    own = f.rpartition(".")[2].lower()
+    last_name = f.rpartition(".")[2].lower()
     guesses = [f"'{h}' is taken as the values, the only complex array as long as '{f}'"]
-    key = own if own in (*FREQUENCY, *ANGULAR) else ""
+    key = last_name if last_name in (*FREQUENCY, *ANGULAR) else ""
     if not key:
         unit = unit_by_round_ends(np.asarray(arrays[f], np.float64))
         if unit is None:

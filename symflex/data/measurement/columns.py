@@ -88,10 +88,10 @@ def assembled(
         raise DataError(Diagnostic("SF602", message, crossed.span, hint))
     made: list[Assembled] = []
     used: set[int] = set()
-    for frequency, *rest in _sections(columns):
+    for frequency, *others in _sections(columns):
         lines = _hertz(frequency, guesses)
-        for label, own in _groups(rest, is_asked=is_asked, guesses=guesses):
-            group = _without_zeros(own, guesses)
+        for label, of_label in _groups(others, is_asked=is_asked, guesses=guesses):
+            group = _without_zeros(of_label, guesses)
             values = _values(group, lines, guesses, columns)
             coherence = group.get("coherence")
             unit = ratio_unit(next(iter(group.values())).meaning.unit, file)
@@ -174,8 +174,8 @@ def _sweeps(one: Assembled, settings: Sequence[Real], guesses: list[str]) -> lis
 
 def _below(column: DataColumn, rows: slice) -> DataColumn:
     wrong = tuple(row - rows.start for row in column.wrong if rows.start <= row < rows.stop)
-    place = column.place
-    return replace(column, wrong=wrong, place=lambda row: place(row + rows.start))
+    location = column.place
+    return replace(column, wrong=wrong, place=lambda row: location(row + rows.start))
 
 
 def _with_frequency(
@@ -212,8 +212,8 @@ def _with_frequency(
     is_index = counts(first.numbers) and not first.meaning.unit
     is_monotonic = np.all(steps > 0) or np.all(steps < 0)
     if first.meaning.kind or is_named or is_index or not steps.size or not is_monotonic:
-        place = "" if header else f"'{file}': "
-        raise DataError(Diagnostic("SF602", f"{place}no column is the frequency", header, ask(columns)))
+        location = "" if header else f"'{file}': "
+        raise DataError(Diagnostic("SF602", f"{location}no column is the frequency", header, ask(columns)))
     factor = FREQUENCY_UNITS.get(first.meaning.unit.lower())
     unit = first.meaning.unit if factor else unit_by_round_ends(first.numbers.real) or "Hz"
     why = ", in which its ends are round numbers" if unit == "rad/s" and not factor else ""
@@ -239,8 +239,8 @@ def _over_input(columns: list[DataColumn], guesses: list[str]) -> list[DataColum
     over, result = sorted(ends, key=lambda c: ends[c])
     ratio = _plain_size(result) / np.where(_plain_size(over) == 0, np.nan, _plain_size(over))
     guesses.append(f"the magnitude is '{result.name[:30]}' over '{over.name[:30]}'")
-    whole = replace(result, meaning=_RATIO, numbers=ratio, wrong=tuple({*result.wrong, *over.wrong}))
-    return [whole if c is result else c for c in columns if c is not over]
+    quotient = replace(result, meaning=_RATIO, numbers=ratio, wrong=tuple({*result.wrong, *over.wrong}))
+    return [quotient if c is result else c for c in columns if c is not over]
 
 
 def _plain_size(column: DataColumn) -> Real:
@@ -273,23 +273,23 @@ def _sections(columns: Sequence[DataColumn]) -> list[list[DataColumn]]:
     """Return each frequency column with the columns that belong to it."""
     lines = [c for c in columns if c.meaning.kind == "frequency"]
     first, *others = sorted(lines, key=lambda c: (c.meaning.scale == "logarithm", c.meaning.factor is None))
-    own = [first]
+    section = [first]
     for other in others:
         a, b = _hertz(first, []), _hertz(other, [])
         if a.shape != b.shape or not np.allclose(a, b, rtol=SAME_FREQUENCY, equal_nan=True):
-            own.append(other)
-    rest = [c for c in columns if c.meaning.kind != "frequency"]
-    if len(own) == 1:
-        return [[first, *rest]]
+            section.append(other)
+    remaining = [c for c in columns if c.meaning.kind != "frequency"]
+    if len(section) == 1:
+        return [[first, *remaining]]
     order = list(columns)
-    begins = sorted(map(order.index, own))
+    begins = sorted(map(order.index, section))
     cuts = pairwise([*begins, len(order)])
     sections = [[c for c in order[a:b] if c.meaning.kind != "frequency"] for a, b in cuts]
-    if not any(sections[:-1]) and all(_is_rounded(first, other) for other in own[1:]):
-        return [[first, *rest]]
+    if not any(sections[:-1]) and all(_is_rounded(first, other) for other in section[1:]):
+        return [[first, *remaining]]
     if not all(any(c.meaning.kind for c in one) for one in sections):
         message = "there are two frequency columns with different values"
-        raise DataError(Diagnostic("SF602", message, own[1].span, ask(columns)))
+        raise DataError(Diagnostic("SF602", message, section[1].span, ask(columns)))
     return [[order[a], *one] for a, one in zip(begins, sections, strict=True)]
 
 
@@ -332,27 +332,27 @@ def unit_by_round_ends(lines: Real) -> str | None:
 
 
 def _groups(
-    rest: Sequence[DataColumn], *, is_asked: bool, guesses: list[str]
+    columns: Sequence[DataColumn], *, is_asked: bool, guesses: list[str]
 ) -> list[tuple[str, dict[str, DataColumn]]]:
-    labels = dict.fromkeys(c.meaning.label for c in rest if c.meaning.kind)
-    alike = {label: [c for c in rest if c.meaning.label == label] for label in labels}
+    labels = dict.fromkeys(c.meaning.label for c in columns if c.meaning.kind)
+    alike = {label: [c for c in columns if c.meaning.label == label] for label in labels}
     groups = [(label, group) for label in labels for group in _pairs(alike[label])]
-    groups = groups or [("", group) for group in _pairs(rest)]
-    coherences = [c for c in rest if c.meaning.kind == "coherence"]
+    groups = groups or [("", group) for group in _pairs(columns)]
+    coherences = [c for c in columns if c.meaning.kind == "coherence"]
     if len(coherences) in (1, len(groups)):
         for i, (_, group) in enumerate(groups):
             group.setdefault("coherence", coherences[i % len(coherences)])
-    powers = [c for c in rest if c.meaning.kind == "power"]
+    powers = [c for c in columns if c.meaning.kind == "power"]
     if not groups and powers:
-        own = [c for c in powers if c.meaning.label != "xyz"] or powers[:1]
+        single_axes = [c for c in powers if c.meaning.label != "xyz"] or powers[:1]
         with np.errstate(all="ignore"):
-            totals = [float(np.nan_to_num(np.nansum(np.abs(c.numbers)))) for c in own]
-        best = own[totals.index(max(totals))]
+            totals = [float(np.nan_to_num(np.nansum(np.abs(c.numbers)))) for c in single_axes]
+        best = single_axes[totals.index(max(totals))]
         others = f", the strongest of {len(powers)}" if len(powers) > 1 else ""
         flat = "its square root is the magnitude, the excitation taken as flat"
         guesses.append(f"'{best.name[:30]}'{others}: {flat}")
         groups = [(best.meaning.label, {"power": best})]
-    sizes = [c for c in rest if c.meaning.kind == "magnitude"]
+    sizes = [c for c in columns if c.meaning.kind == "magnitude"]
     if not groups and len(sizes) == 1 and (is_asked or sizes[0].meaning is _RATIO):
         groups = [("", {"magnitude": sizes[0]})]
     return groups
@@ -368,9 +368,9 @@ def _pairs(columns: Sequence[DataColumn]) -> list[dict[str, DataColumn]]:
     phases = _in_one_unit(by_kind.get("phase", []))
     sizes = by_kind.get("magnitude") or (by_kind.get("power", []) if phases else [])
     if len(phases) == 1:  # a magnitude once as it is and once in dB, or besides an amplitude
-        own = [c for c in sizes if c.meaning.label and phases[0].meaning.label.startswith(c.meaning.label)]
+        alike = [c for c in sizes if c.meaning.label and phases[0].meaning.label.startswith(c.meaning.label)]
         sizes = sorted(
-            own or sizes,
+            alike or sizes,
             key=lambda c: (
                 bool(re.search(r"\b(?:min|max)", c.meaning.label, re.I)),
                 c.meaning.scale != "decibel",
@@ -559,11 +559,13 @@ def _wrong(column: DataColumn, lines: Real) -> list[Diagnostic]:
 def _missing(columns: Sequence[DataColumn], file: str, header: Span | None) -> Diagnostic:
     """Return why columns make no response, and which option says what they are."""
     kinds = {c.meaning.kind for c in columns}
-    place = "" if header else f"'{file}': "
+    location = "" if header else f"'{file}': "
     unknown = next((c for c in columns if not c.meaning.kind and c.name), None)
     pairs = [("real", "imaginary"), ("magnitude", "phase")]
     missing = next((b if a in kinds else a for a, b in pairs if (a in kinds) != (b in kinds)), None)
-    message = f"{place}a column of {missing} is missing" if missing else f"{place}no columns have the values"
+    message = (
+        f"{location}a column of {missing} is missing" if missing else f"{location}no columns have the values"
+    )
     if not (unknown and missing and header):
         return Diagnostic("SF602", message, header, ask(columns))
     hint = " ".join(filter(None, (nearest(unknown.name.lower(), KINDS), ask(columns))))

@@ -218,13 +218,13 @@ def _responses(
         guesses.append(f"lines {lines} contain a table without a frequency and are skipped")
         blocks, parts = blocks[named:], parts[named:]
     for i in range(1, len(parts)):  # a table below another one of the same shape has its names
-        (above, line), (own, own_line) = parts[0], parts[i]
-        if own_line is None and len(own) == len(above) and line is not None:
-            pairs = zip(own, above, strict=True)
-            own = [
+        (above, line), (heading, own_line) = parts[0], parts[i]
+        if own_line is None and len(heading) == len(above) and line is not None:
+            pairs = zip(heading, above, strict=True)
+            heading = [
                 replace(c, meaning=c.meaning if c.meaning.kind else a.meaning, name=a.name) for c, a in pairs
             ]
-            parts[i] = own, line
+            parts[i] = heading, line
     columns, header = parts[0]
     for others, _ in parts[1:]:
         first, other = columns[0].numbers.real, others[0].numbers.real
@@ -287,9 +287,9 @@ def _columns(
     numbers = [block.numbers(i) for i in range(width)]
     if numbers[0][0].dtype.kind == "c" and not np.any(numbers[0][0].imag):  # numpy writes all as complex
         numbers[0] = numbers[0][0].real, numbers[0][1]
-    whole = next((c for row in block.rows for c in row if WHOLE[table.decimal].fullmatch(c)), None)
-    if whole:
-        guesses.append(f"numbers such as {whole} are read in thousands")
+    integer = next((c for row in block.rows for c in row if WHOLE[table.decimal].fullmatch(c)), None)
+    if integer:
+        guesses.append(f"numbers such as {integer} are read in thousands")
     line, cells, under, below = _header(table, block, [n.dtype.kind == "c" for n, _ in numbers])
     if table.delimiter == "," and 0 < 2 * sum(map(bool, cells)) == width:
         message = f"{width} cells where the header has {width // 2} names: decimal commas between commas?"
@@ -425,6 +425,6 @@ def _comment_fields(table: TextTable) -> dict[str, Span]:
     for start, line in zip(table.starts, table.lines, strict=False):
         if line.strip().startswith(COMMENTS) and (match := _COMMENT_FIELD.fullmatch(line)):
             begin = start + match.start("value")
-            place = Span(table.source, begin, begin + len(match["value"].rstrip()))
-            spans.setdefault(match["key"].lower(), place)
+            location = Span(table.source, begin, begin + len(match["value"].rstrip()))
+            spans.setdefault(match["key"].lower(), location)
     return spans

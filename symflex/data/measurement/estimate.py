@@ -94,8 +94,8 @@ class _Channel:
     @cached_property
     def pulse(self) -> int | None:
         """Where a short pulse begins, before and after which the input is zero; ``None`` if it is another."""
-        rest = np.median(self.u)
-        acting = np.flatnonzero(np.abs(self.u - rest) > LEVELS * np.max(np.abs(self.u - rest)))
+        baseline = np.median(self.u)
+        acting = np.flatnonzero(np.abs(self.u - baseline) > LEVELS * np.max(np.abs(self.u - baseline)))
         is_short = acting[-1] - acting[0] < PULSE * self.u.size and acting[0] < self.u.size / 2
         return int(acting[0]) if is_short else None
 
@@ -146,8 +146,8 @@ def responses_of(record: TimeRecord, how: Estimate) -> tuple[MeasuredResponse, .
         is_driven = record.input is None and halves[1] > DIES_AWAY * halves[0]
         if record.input is None:
             if is_driven:
-                own = _Channel(values, values, record.step_s)
-                frequency, response, coherence, averages, window, said = _by_segments(own, how)
+                alone = _Channel(values, values, record.step_s)
+                frequency, response, coherence, averages, window, said = _by_segments(alone, how)
             else:
                 frequency, response, coherence, said = _decay(values, record.step_s)
             called = name if len(record.outputs) > 1 else record.name
@@ -267,13 +267,13 @@ def _weights(y: Real, noise: float, step_s: float, how: Estimate) -> tuple[Real,
 
     length = y.size * step_s
     end = y[-max(y.size // 10, 8) :]
-    left = 2 * float(np.max(np.abs(np.fft.rfft(end)))) / end.size
+    remaining = 2 * float(np.max(np.abs(np.fft.rfft(end)))) / end.size
     # The largest of m lines of noise hardly exceeds its mean power (ln m + 5)-fold.
     limit = max(2 * noise * np.sqrt((np.log(end.size) + 5) / end.size), SETTLED * float(np.max(np.abs(y))))
     # Whole decades, so that records of one kind have one window and can be averaged.
-    decays = np.log(10) * np.ceil(np.log10(left / limit / BELOW_NOISE)) if left > limit else 0.0
+    decays = np.log(10) * np.ceil(np.log10(remaining / limit / BELOW_NOISE)) if remaining > limit else 0.0
     if how.window == "none" or (how.window == "hann" and decays == 0):
-        share = left / float(np.max(np.abs(y)))
+        share = remaining / float(np.max(np.abs(y)))
         said = f"; {share:.0%} of it is left at the end, which changes gains, not poles"
         return np.ones(y.size), "", said if share > AT_REST else ""
     asked = how.window.partition(":")[2]

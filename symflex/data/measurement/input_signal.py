@@ -193,8 +193,8 @@ def _of_arrays(name: str, arrays: Arrays) -> InputSignal:
     for array, what in ((times, "time"), (values, "value")):
         numbers = np.asarray(array.real.ravel(), np.float64)
         if not np.isfinite(numbers).all():
-            place = int(np.argmin(np.isfinite(numbers))) + 1
-            raise DataError(Diagnostic("SF603", f"'{name}': {what} {place} is not a finite number"))
+            sample = int(np.argmin(np.isfinite(numbers))) + 1
+            raise DataError(Diagnostic("SF603", f"'{name}': {what} {sample} is not a finite number"))
         exact.append([Fraction(number) for number in numbers.tolist()])
     a, b = exact[0], exact[0][1:]
     if not (all(map(le, a, b)) and all(map(lt, a, b[1:]))):  # two at one time are a jump
@@ -212,7 +212,7 @@ def _decimal_times(times: list[Fraction]) -> list[Fraction]:
     places = np.round(numbers / step)
     decimal = [Fraction(f"{number:.10g}") for number in numbers.tolist()]
     if np.all(np.abs(numbers - places * step) <= EVEN * step):
-        decimal = [Fraction(str(step)) * int(place) for place in places.tolist()]
+        decimal = [Fraction(str(step)) * int(index) for index in places.tolist()]
     return decimal if all(map(eq, *(map(lt, x, x[1:]) for x in (decimal, times)))) else times
 
 

@@ -67,13 +67,13 @@ def main(library: str, limit: int) -> None:
 def _sheet(file: BytesIO) -> Arrays:
     """Return the sheet with the most rows that begin with a number, as text."""
     book = installed("openpyxl").load_workbook(file, read_only=True, data_only=True)
-    best, left = (0, [""]), MAX_CELLS
+    best, remaining = (0, [""]), MAX_CELLS
     for sheet in book.worksheets:
         sheet.reset_dimensions()  # those that a file claims would be filled with empty cells
         rows = []
         for row in sheet.values:
-            left -= len(row) + 1
-            if left < 0:
+            remaining -= len(row) + 1
+            if remaining < 0:
                 raise OverflowError
             rows.append("\t".join("" if x is None else " ".join(str(x).split()) for x in row))
         best = max(best, (sum(bool(re.match(r"[-+.\d]", row)) for row in rows), rows), key=itemgetter(0))
@@ -105,8 +105,8 @@ def _datasets(file: BytesIO) -> Arrays:
             elif isinstance(one, h5py.Dataset) and h5py.check_string_dtype(one.dtype):
                 found[key] = np.array(one.asstr()[()])
 
-    with h5py.File(file, "r") as whole:
-        walk(whole, "", 0)
+    with h5py.File(file, "r") as opened:
+        walk(opened, "", 0)
     return {name: np.squeeze(array) for name, array in found.items() if array.dtype.kind in "fciuU"}
 
 

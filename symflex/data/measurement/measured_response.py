@@ -191,10 +191,10 @@ def checked_response(
         # The first one tells: of two sweeps, or a column that was misread, every line would be named.
         for i in np.flatnonzero(wrong)[:1].tolist():
             span = span_of(int(lines[i]), column)
-            place = "" if span else f"'{file}', line {lines[i] + 1} of {response.name}: "
+            location = "" if span else f"'{file}', line {lines[i] + 1} of {response.name}: "
             others = int(np.sum(wrong)) - 1
             more = f"; so in {others} more line{'s' * (others > 1)}" if others else ""
-            problems.append(Diagnostic(code, place + say(i) + more, span, hint))
+            problems.append(Diagnostic(code, location + say(i) + more, span, hint))
 
     wrong = ~((frequency >= SLOWEST) & (frequency <= FASTEST))
     hint = f"frequencies lie between {SLOWEST:g} and {FASTEST:g} Hz"
@@ -249,7 +249,7 @@ def _ordered(
 
     def note(left_out: npt.NDArray[np.intp], kind: str) -> None:
         places = [(int(i), span_of(int(i), "frequency")) for i in left_out[:SHOWN_NAMES]]
-        listed = ", ".join(str(place.line if place else i + 1) for i, place in places)
+        listed = ", ".join(str(location.line if location else i + 1) for i, location in places)
         more = f", ... ({left_out.size} in all)" if left_out.size > SHOWN_NAMES else ""
         many = "lines" if left_out.size > 1 else "line"
         said.append(f"left out {kind}: {many} {listed}{more}")
@@ -304,8 +304,8 @@ def averages_of(text: str, file: str, span: Span | None = None) -> float:
     except ValueError:
         number = float("nan")
     if not 1 <= number <= MOST_AVERAGES:
-        place = "" if span else f"'{file}': "
-        message = f"{place}the number of averages is '{text[:40]}'"
+        location = "" if span else f"'{file}': "
+        message = f"{location}the number of averages is '{text[:40]}'"
         raise DataError(Diagnostic("SF603", message, span, "write a number of at least 1"))
     return number
 
@@ -319,8 +319,8 @@ def unit_of(text: str, file: str, span: Span | None = None) -> str:
         parse_unit(Text.alone(file, unit))
     except SpecError as error:
         (reason, *_) = error.diagnostics
-        place = "" if span else f"'{file}': "
-        message = f"{place}the unit of the values: {reason.message}"
+        location = "" if span else f"'{file}': "
+        message = f"{location}the unit of the values: {reason.message}"
         usual = "such as m/N, m/(N*s^2), rad/V; 1 for a pure number; leave it out if there is no unit"
         raise DataError(Diagnostic("SF602", message, span, reason.hint or usual)) from None
     return unit

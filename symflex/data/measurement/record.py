@@ -144,13 +144,13 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
     if names:
         times = _seconds(columns[at] * float(unit), guesses) + float(start)
         # Counters and magnitudes of vectors, which are no longer such where they are made even.
-        left = [at, *(i for i, x in enumerate(columns) if np.all(np.diff(x) == 1))]
-        squares = np.sum([x**2 for i, x in enumerate(columns) if i not in left], axis=0)
+        excluded = [at, *(i for i, x in enumerate(columns) if np.all(np.diff(x) == 1))]
+        squares = np.sum([x**2 for i, x in enumerate(columns) if i not in excluded], axis=0)
         for i, x in enumerate(columns):
-            if width - len(left) > 3 and np.allclose(2 * x**2, squares, 1e-6, 0):  # noqa: PLR2004 (x, y, z)
-                left.append(i)
+            if width - len(excluded) > 3 and np.allclose(2 * x**2, squares, 1e-6, 0):  # noqa: PLR2004 (x, y, z)
+                excluded.append(i)
                 guesses.append(f"'{cells[i][:30]}' is the magnitude of the others and is left out")
-        channels = [(_plain(c, i), columns[i]) for i, c in enumerate(cells[:width]) if i not in left]
+        channels = [(_plain(c, i), columns[i]) for i, c in enumerate(cells[:width]) if i not in excluded]
         step, kept = _even(times, table, lines, guesses)
         channels = [(c, _resampled(times, x, step) if kept else x) for c, x in channels]
     else:
@@ -271,11 +271,11 @@ def _numbers(
     sparse = np.flatnonzero(2 * empty.sum(axis=0) > len(empty) * ~np.isin(range(width), [*unused])).tolist()
     wrong = np.asarray(np.delete(empty, sparse, axis=1).any(axis=1), bool)
     if not are_few(wrong):
-        place = table.line(lines[int(np.argmax(wrong))])
+        location = table.line(lines[int(np.argmax(wrong))])
         hint = "a time record has a number in every column; --columns t,-,u,y leaves columns out"
-        raise DataError(Diagnostic("SF603", "a line contains something other than numbers", place, hint))
-    if left := [i for i in sparse if i not in unused]:
-        many = ", ".join(str(i + 1) for i in left[:12])
+        raise DataError(Diagnostic("SF603", "a line contains something other than numbers", location, hint))
+    if sparse_used := [i for i in sparse if i not in unused]:
+        many = ", ".join(str(i + 1) for i in sparse_used[:12])
         guesses.append(f"columns in which most cells contain no number are left out: {many}")
     if sparse:
         read = [[x if isinstance(x, float) else np.nan for x in row] for row in read]
@@ -296,12 +296,12 @@ def _even(
         raise DataError(Diagnostic("SF605", message))
     if not np.all(steps > 0):
         i = int(np.argmax(~(steps > 0))) + 1
-        place = table.line(lines[i]) if table else None
+        location = table.line(lines[i]) if table else None
         hint = "one record per file; sort its lines, or leave out what was recorded before"
         if np.all(steps >= 0):
             hint = "several samples have one time: say how far they are apart, --columns -,u,y,dt=SECONDS"
         message = f"the time {times[i]:.9g} s follows {times[i - 1]:.9g} s"
-        raise DataError(Diagnostic("SF604", message, place, hint))
+        raise DataError(Diagnostic("SF604", message, location, hint))
     step = float(np.median(steps))
     even = times[0] + step * np.arange(times.size)
     mean = (times[-1] - times[0]) / (times.size - 1)
@@ -328,7 +328,7 @@ def _resampled(times: Real, values: Real, step: float) -> Real:
 
 def _asked(
     channels: Sequence[tuple[str, Real]], words: Sequence[str], interval: str, stem: str, guesses: list[str],
-    place: tuple[TextTable | None, Sequence[int]] = (None, ()),
+    location: tuple[TextTable | None, Sequence[int]] = (None, ()),
 ) -> TimeRecord:  # fmt: skip
     words = [word.lower() for word in words]
     if len(words) > len(channels):
@@ -339,7 +339,7 @@ def _asked(
     if not interval and at is not None:
         times = channels[at][1] * float(SECONDS.get(words[at].partition("_")[2], 1))
         times = _seconds(times, guesses) if words[at] == "t" else times
-        step, kept = _even(times, *place, guesses)
+        step, kept = _even(times, *location, guesses)
     if not (isinstance(step, float) and 0 < step < np.inf):
         raise refused(
             f"--columns: '{interval[:40]}' is not a sampling time in seconds", "such as u,y,dt=0.01"
@@ -365,14 +365,17 @@ def _asked(
 def _asked_arrays(arrays: Arrays, words: Sequence[str], interval: str, name: str, stem: str) -> TimeRecord:
     """Return the record of the arrays that ``--columns`` names, or of the columns of the largest matrix."""
     keys = [key for _, is_named, key in (word.partition("=") for word in words) if is_named]
-    whole, matrix = largest_matrix(arrays)
+    array_name, matrix = largest_matrix(arrays)
     chosen = [arrays[k].ravel() for k in keys if k in arrays and arrays[k].dtype.kind in "fiu"]
     chosen = chosen if keys else list(matrix.T)
     if len(chosen) < len(words) or len({x.size for x in chosen}) != 1:
         message = f"'{name}': --columns {','.join(words)[:60]}: there are no such arrays of one length"
         raise refused(message, f"it has {listed_names(list(arrays))}")
     channels = [(c, np.asarray(x, np.float64)) for c, x in zip(keys or words, chosen, strict=False)]
-    words, guesses = [word.partition("=")[0] for word in words], [f"the columns are those of '{whole[:30]}'"]
+    words, guesses = (
+        [word.partition("=")[0] for word in words],
+        [f"the columns are those of '{array_name[:30]}'"],
+    )
     return _asked(channels, words, interval, stem, [] if keys else guesses)
 
 
@@ -413,8 +416,8 @@ def _sorted(
     ]
     for channel, values in channels:
         if not np.isfinite(values).all():
-            place = int(np.argmin(np.isfinite(values))) + 1
-            message = f"'{name}': sample {place} of '{channel[:40]}' is not a finite number"
+            sample = int(np.argmin(np.isfinite(values))) + 1
+            message = f"'{name}': sample {sample} of '{channel[:40]}' is not a finite number"
             raise DataError(Diagnostic("SF603", message, None, "leave the line out"))
     for channel, values in channels:
         if _INPUT.fullmatch(channel) and np.ptp(values) == 0 and values[0]:
@@ -449,10 +452,13 @@ def _sorted(
     mates = {c[1:].lower() for c in others if not c[-1].isdigit()}  # yVal belongs to uVal, and y2 to u1 too
     others += [c for c, _ in channels if c[1:].lower() in mates and c not in others]
     again = [c for c, x in channels if abs(np.corrcoef(x, excitation[1])[0, 1]) > SAME and c != source]
-    for left, why in ((others, "another input, or its output,"), (again, f"a multiple of '{source[:30]}'")):
-        if left and len(channels) > len(left) + 1:
-            guesses.append(f"'{left[0][:30]}' is {why} and is left out")
-            channels = [(c, x) for c, x in channels if c not in left]
+    for dropped, why in (
+        (others, "another input, or its output,"),
+        (again, f"a multiple of '{source[:30]}'"),
+    ):
+        if dropped and len(channels) > len(dropped) + 1:
+            guesses.append(f"'{dropped[0][:30]}' is {why} and is left out")
+            channels = [(c, x) for c, x in channels if c not in dropped]
     outputs = tuple((c, x) for c, x in channels if c != source)
     return TimeRecord(stem, step, outputs or (excitation,), excitation if outputs else None, tuple(guesses))
 

@@ -251,8 +251,8 @@ class TextTable:
         for word in cut(text, self.delimiter, are_all_kept=True):
             at = text.find(word, end) if word else 0
             end = max(at, end) + len(word)
-            place = Span(self.source, start + at, start + at + len(word))
-            spans.append(place if at >= 0 else self.line(index))
+            location = Span(self.source, start + at, start + at + len(word))
+            spans.append(location if at >= 0 else self.line(index))
         return spans
 
     def blocks(self) -> list[NumberBlock]:
@@ -263,14 +263,14 @@ class TextTable:
         """Return the blocks of numbers, without those that are small beside the largest."""
         begun: list[tuple[list[int], list[int], list[tuple[str, ...]]]] = []
         gap: list[int] = []
-        left = MAX_CELLS
+        remaining = MAX_CELLS
         for i, line in enumerate(self.lines):
             cells = cut(line, self.delimiter) if line and not line.isspace() else []
             if not self._has_numbers(cells, len(begun[-1][2][-1]) if begun else 0, has_text_in_front):
                 gap.append(i)
                 continue
-            left -= len(cells)
-            if left < 0:
+            remaining -= len(cells)
+            if remaining < 0:
                 message = f"'{self.source.name}' has more than {MAX_CELLS} numbers"
                 raise DataError(Diagnostic("SF607", message, self.line(i)))
             rows = begun[-1][2] if begun else []

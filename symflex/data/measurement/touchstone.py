@@ -39,24 +39,24 @@ def read_touchstone(name: str, data: bytes, stem: str, asked: str = "") -> tuple
     start = 0
     for line in text.split("\n"):
         written = line.split("!")[0].strip()
-        place = Span(source, start + len(line) - len(line.lstrip()), start + len(line.rstrip()))
+        location = Span(source, start + len(line) - len(line.lstrip()), start + len(line.rstrip()))
         start += len(line) + 1
         if written.startswith("#") and not rows:
-            options = _options(written[1:].upper().split(), options, place)
+            options = _options(written[1:].upper().split(), options, location)
         elif written.startswith("["):
             keywords |= {m[1].lower(): m[2].upper() for m in [_KEYWORD.match(written)] if m}
-            options[4] = _resistance(keywords.get("reference", options[4]), place)
+            options[4] = _resistance(keywords.get("reference", options[4]), location)
             if "noise data" in written.lower():
                 break
         elif written:
-            row = _row(written, ports, place)
+            row = _row(written, ports, location)
             if rows and row[0] < rows[-1][0] and ports == 2 and len(row) == 5:  # noqa: PLR2004 (noise parameters)
                 break
             rows.append(row)
-            places.append(place)
+            places.append(location)
             if len(row) != 1 + 2 * ports**2:
                 message = f"{len(row)} numbers in a line of a {ports}-port, which has {1 + 2 * ports**2}"
-                raise DataError(Diagnostic("SF601", message, place, "one line per frequency"))
+                raise DataError(Diagnostic("SF601", message, location, "one line per frequency"))
     if not rows or len(rows) > MAX_LINES:
         raise DataError(Diagnostic("SF607" if rows else "SF605", f"'{name}' has {len(rows)} lines of data"))
     table = np.array(rows)
@@ -77,7 +77,7 @@ def read_touchstone(name: str, data: bytes, stem: str, asked: str = "") -> tuple
     return (checked_response(response, name, lambda i, _: places[i]),)
 
 
-def _options(words: list[str], options: list[str], place: Span) -> list[str]:
+def _options(words: list[str], options: list[str], location: Span) -> list[str]:
     unit, kind, form, _, resistance = options
     for i, word in enumerate(words):
         if word in _SCALES:
@@ -89,24 +89,24 @@ def _options(words: list[str], options: list[str], place: Span) -> list[str]:
         elif word == "R" and i + 1 < len(words):
             resistance = words[i + 1]
         elif not (i and words[i - 1] == "R"):
-            raise DataError(Diagnostic("SF601", f"unknown option '{word[:20]}'", place, _OPTIONS))
-    return [unit, kind, form, "R", _resistance(resistance, place)]
+            raise DataError(Diagnostic("SF601", f"unknown option '{word[:20]}'", location, _OPTIONS))
+    return [unit, kind, form, "R", _resistance(resistance, location)]
 
 
-def _resistance(text: str, place: Span) -> str:
+def _resistance(text: str, location: Span) -> str:
     if not re.fullmatch(r"\d{1,20}\.?\d{0,20}(E[-+]?\d{1,2})?", text) or not float(text) > 0:
-        raise DataError(Diagnostic("SF601", f"a reference resistance '{text[:20]}'", place, _OPTIONS))
+        raise DataError(Diagnostic("SF601", f"a reference resistance '{text[:20]}'", location, _OPTIONS))
     return text
 
 
-def _row(written: str, ports: int, place: Span) -> list[float]:
+def _row(written: str, ports: int, location: Span) -> list[float]:
     try:
         if "_" not in written:
             return [float(cell) for cell in written.split()]
     except ValueError:
         pass
     message = f"this line of a {ports}-port contains something other than a number"
-    raise DataError(Diagnostic("SF603", message, place, _OPTIONS))
+    raise DataError(Diagnostic("SF603", message, location, _OPTIONS))
 
 
 def _parameters(cells: npt.NDArray[np.float64], form: str) -> Complex:

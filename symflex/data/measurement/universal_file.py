@@ -106,10 +106,10 @@ def _datasets(name: str, data: bytes) -> tuple[list[_Place], dict[int, int]]:
     """Return the datasets 58, with headers that can be read, and by kind of all datasets a first number."""
     places: list[_Place] = []
     kinds: dict[int, int] = {}
-    place, lines = 0, 0
+    offset, lines = 0, 0
     marks = _MARKS.finditer(data)
     for number, begin in enumerate(marks):
-        line = lines + data.count(b"\n", place, begin.start()) + 2
+        line = lines + data.count(b"\n", offset, begin.start()) + 2
         end = next(marks, None)
         if end is None:
             message = f"{name}:{line - 1}:1: this dataset has no end"
@@ -122,8 +122,8 @@ def _datasets(name: str, data: bytes) -> tuple[list[_Place], dict[int, int]]:
         if kind[:2] == b"58" and kind[2:3] in (b"", b"b", b" ", b"B"):
             _check_header(name, line, block[1:])
             places.append((line, number))
-        lines += data.count(b"\n", place, end.start())
-        place = end.start()
+        lines += data.count(b"\n", offset, end.start())
+        offset = end.start()
     return places, kinds
 
 
@@ -171,12 +171,14 @@ def _ends(entry: Mapping[str, Any]) -> tuple[object, ...]:
 
 
 def _response(
-    place: str, stem: str, entry: Mapping[str, Any], coherence: Mapping[str, Any] | None, system: int
+    location: str, stem: str, entry: Mapping[str, Any], coherence: Mapping[str, Any] | None, system: int
 ) -> MeasuredResponse:
     lines, values = np.asarray(entry["x"]), np.asarray(entry["data"])
     are_numbers = lines.dtype.kind in "fiu" and values.dtype.kind in "fciu"
     if lines.ndim != 1 or lines.shape != values.shape or not are_numbers:
-        raise DataError(Diagnostic("SF601", f"{place}:1: {values.size} values at {lines.size} frequencies"))
+        raise DataError(
+            Diagnostic("SF601", f"{location}:1: {values.size} values at {lines.size} frequencies")
+        )
     weights = None
     if coherence is not None and np.asarray(coherence["data"]).shape == lines.shape:
         weights = np.clip(np.real(np.asarray(coherence["data"])), 0, 1)
@@ -192,7 +194,7 @@ def _response(
     response = MeasuredResponse(
         tf, lines, values, weights, averages, window, unit, is_synthetic, notes, guesses
     )
-    return checked_response(response, place, lambda *_: None)
+    return checked_response(response, location, lambda *_: None)
 
 
 def _ends_name(entry: Mapping[str, Any]) -> str:
