@@ -854,8 +854,10 @@ def _gain(given: Stated | None, parameter: ModelParameter) -> Fraction | None:
     quantity = _quantity(given, "--range", wrong)
     dimension = unit_of(parameter.unit).dimension if parameter.unit else None
     if quantity.unit and quantity.dimension != dimension:
-        own = f"is in '{parameter.unit}'" if parameter.unit else "is a number without a unit"
-        raise UsageError(Diagnostic("SF203", f"'{parameter.name}' {own}, the range is in '{quantity.unit}'"))
+        measured = f"is in '{parameter.unit}'" if parameter.unit else "is a number without a unit"
+        raise UsageError(
+            Diagnostic("SF203", f"'{parameter.name}' {measured}, the range is in '{quantity.unit}'")
+        )
     return value_in_unit(parameter, quantity).nearly
 
 

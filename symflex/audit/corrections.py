@@ -101,12 +101,12 @@ def find_correction(reading: FormulaReading, tf: TransferFunction) -> Correction
 
 def _in_expression(reading: FormulaReading) -> Iterator[Correction]:
     formula = reading.formula
-    parts = [(p, place) for p, place in _parts(formula.expression) if p is not formula.expression]
+    parts = [(p, side) for p, side in _parts(formula.expression) if p is not formula.expression]
     if formula.scale is not None:
         parts += [(p, "scale") for p, _ in _parts(formula.scale)]
     wanted: list[_Wanted] = []
     work = 0
-    for part, place in parts[:MOST_PARTS]:
+    for part, side in parts[:MOST_PARTS]:
         spend()
         if work > MOST_WORK:
             break
@@ -115,7 +115,7 @@ def _in_expression(reading: FormulaReading) -> Iterator[Correction]:
         except (UnreadError, GrowError, BudgetError, SpecError, ZeroDivisionError):
             continue
         if value is not None:
-            wanted.append(_Wanted(reading, part, place, value))
+            wanted.append(_Wanted(reading, part, side, value))
             work += sum(len(f) for f, _ in value.factors)
     for rule in (_times_number, _other_exponent, _other_symbol, _times_monomial, _other_terms, _more_terms):
         for each in wanted:
@@ -130,17 +130,17 @@ def _parts(expression: Expression) -> Iterator[tuple[Expression, str]]:
     """Yield every part with where it stands, outer ones first; a bar within a sum does not count."""
     pending = [(expression, "numerator", False)]
     while pending:
-        node, place, within = pending.pop()
-        yield node, place
+        node, side, within = pending.pop()
+        yield node, side
         match node:
             case Quotient(above, below) if not within:
-                other = "denominator" if place == "numerator" else "numerator"
-                pending += [(below, other, False), (above, place, False)]
+                other = "denominator" if side == "numerator" else "numerator"
+                pending += [(below, other, False), (above, side, False)]
             case Power(base, _):
-                pending.append((base, place, within))
+                pending.append((base, side, within))
             case _:
                 inner = within or isinstance(node, Sum | Call)
-                pending += [(child, place, inner) for child in reversed(node.children)]
+                pending += [(child, side, inner) for child in reversed(node.children)]
 
 
 def _needed(reading: FormulaReading, part: Expression) -> Factored | None:
@@ -244,9 +244,9 @@ def _other_symbol(wanted: _Wanted) -> Iterator[Correction]:
     for other in others:
         if reading.field.equal(reading.value(other), wanted.value):
             if around and isinstance(part, Name):
-                whole = _replaced(within := quotients[min(around)[1]], part, other)
-                plain = of_powers(*powers_of(whole))
-                if len(nodes(plain)) < len(nodes(whole)):  # T_22 is no T_22*Z_1/Z_1
+                replaced = _replaced(within := quotients[min(around)[1]], part, other)
+                plain = of_powers(*powers_of(replaced))
+                if len(nodes(plain)) < len(nodes(replaced)):  # T_22 is no T_22*Z_1/Z_1
                     yield replace(wanted, part=within).replaced_by(plain)
                     continue
             yield wanted.replaced_by(other)
@@ -254,7 +254,7 @@ def _other_symbol(wanted: _Wanted) -> Iterator[Correction]:
 
 def _other_terms(wanted: _Wanted) -> Iterator[Correction]:
     """Yield a sum of the same terms with other coefficients, and another number in front of all."""
-    reading, part, place = wanted.reading, wanted.part, wanted.place
+    reading, part, side = wanted.reading, wanted.part, wanted.place
     if not isinstance(part, Sum):
         return
     coefficients = solve_linear(reading.field, wanted.value, [reading.value(t) for t in part.terms])
@@ -266,11 +266,11 @@ def _other_terms(wanted: _Wanted) -> Iterator[Correction]:
         new = _times(coefficient / common, term)
         terms.append(new)
         if coefficient != common:
-            changes.append(Change(place, term, new))
+            changes.append(Change(side, term, new))
     corrected = wanted.replaced_by(sum_of(terms))
     expression = corrected.expression
     if common != 1:
-        expression, before, after = _scaled(expression, common if place == "numerator" else 1 / common)
+        expression, before, after = _scaled(expression, common if side == "numerator" else 1 / common)
         changes.insert(0, Change("factor", before, after))
     yield Correction(tuple(changes), expression, corrected.scale, corrected.lines)
 
@@ -335,11 +335,11 @@ def _numbers_in_front(expression: Expression) -> tuple[Fraction, list[Expression
 def _both_sums(reading: FormulaReading) -> Iterator[Correction]:
     """Yield sums above and below the bar, both with other coefficients."""
     field, formula = reading.field, reading.formula
-    sums = [(p, place) for p, place in _parts(formula.expression) if isinstance(p, Sum)]
-    for above in (p for p, place in sums if place == "numerator"):
-        for below in (p for p, place in sums if place == "denominator"):
-            rest = reading.printed / reading.value(above) * reading.value(below)
-            uppers = [rest * reading.value(t) for t in above.terms]
+    sums = [(p, side) for p, side in _parts(formula.expression) if isinstance(p, Sum)]
+    for above in (p for p, side in sums if side == "numerator"):
+        for below in (p for p, side in sums if side == "denominator"):
+            ratio = reading.printed / reading.value(above) * reading.value(below)
+            uppers = [ratio * reading.value(t) for t in above.terms]
             lowers = [reading.derived * reading.value(t) for t in below.terms]
             for i, reference in enumerate(lowers):
                 others = [-v for j, v in enumerate(lowers) if j != i]
@@ -356,14 +356,14 @@ def _with_sums(
     reading: FormulaReading, upper: tuple[Sum, tuple[Fraction, ...]], lower: tuple[Sum, tuple[Fraction, ...]]
 ) -> Correction:
     expression, changes, ratio = reading.formula.expression, [], Fraction(1)
-    for (part, coefficients), place in ((upper, "numerator"), (lower, "denominator")):
+    for (part, coefficients), side in ((upper, "numerator"), (lower, "denominator")):
         common = Counter(c for c in coefficients if c).most_common(1)[0][0]
-        ratio = ratio * common if place == "numerator" else ratio / common
+        ratio = ratio * common if side == "numerator" else ratio / common
         terms = []
         for term, coefficient in zip(part.terms, coefficients, strict=True):
             terms.append(_times(coefficient / common, term))
             if coefficient != common:
-                changes.append(Change(place, term, terms[-1]))
+                changes.append(Change(side, term, terms[-1]))
         expression = _replaced(expression, part, sum_of(terms))
     if ratio != 1:
         expression, before, after = _scaled(expression, ratio)
@@ -390,13 +390,13 @@ def _exchanged_names(reading: FormulaReading, numbers: Numbers) -> Iterator[Corr
     """Yield the formula with two names exchanged, everywhere or in one of its sums."""
     formula = reading.formula
     parts = list(_parts(formula.expression))[:MOST_PARTS]
-    for part, place in [p for p in parts if isinstance(p[0], Sum)] + parts[:1]:
+    for part, side in [p for p in parts if isinstance(p[0], Sum)] + parts[:1]:
         names = dict.fromkeys(n for n in nodes(part) if isinstance(n, Name) and n.name != LAPLACE)
         for one, other in combinations(names, 2):
             new = substitute(part, {one.name: other, other.name: one})
             expression = _replaced(formula.expression, part, new)
             if _agrees(replace(numbers, formula=replace(formula, expression=expression))):
-                changes = Change(place, one, other), Change(place, other, one)
+                changes = Change(side, one, other), Change(side, other, one)
                 yield Correction(changes, expression, formula.scale, formula.lines)
 
 
@@ -404,10 +404,10 @@ def _mended_calls(reading: FormulaReading, tf: TransferFunction, numbers: Number
     """Yield slips in the argument of a function, one function too many, and a delay that is left out."""
     formula = reading.formula
     others = [Name(n) for n in (*sorted(formula.parameters), *reading.lines)]
-    own = print_form(tf) if any(k.function == "exp" for k in tf.kernels.kernels) else None
-    parts = (*nodes(own.num), *nodes(own.den)) if own else ()
+    derived_form = print_form(tf) if any(k.function == "exp" for k in tf.kernels.kernels) else None
+    parts = (*nodes(derived_form.num), *nodes(derived_form.den)) if derived_form else ()
     late = dict.fromkeys(n for n in parts if isinstance(n, Call) and n.name == "exp")
-    for part, place in list(_parts(formula.expression))[:MOST_PARTS]:
+    for part, side in list(_parts(formula.expression))[:MOST_PARTS]:
         new: list[Expression] = []
         if isinstance(part, Call):
             scaled = (replace(part, argument=argument) for argument in _multiples(part.argument))
@@ -418,7 +418,7 @@ def _mended_calls(reading: FormulaReading, tf: TransferFunction, numbers: Number
         for old, other in changes:
             expression = _replaced(formula.expression, old, other)
             if _agrees(replace(numbers, formula=replace(formula, expression=expression))):
-                yield Correction((Change(place, old, other),), expression, formula.scale, formula.lines)
+                yield Correction((Change(side, old, other),), expression, formula.scale, formula.lines)
 
 
 def _multiples(part: Expression) -> Iterator[Expression]:
@@ -443,11 +443,11 @@ def _slipped_twice(reading: FormulaReading, numbers: Numbers) -> Iterator[Correc
     def slips(line: Expression) -> dict[Expression, None]:
         return dict.fromkeys((*_multiples(line), *_slips(line, others)))
 
-    own = [(i, *line) for i, line in enumerate(reading.formula.lines) if not _only_renames(line[1])]
-    for i, name, line in own:
+    lines = [(i, *line) for i, line in enumerate(reading.formula.lines) if not _only_renames(line[1])]
+    for i, name, line in lines:
         for new in islice(dict.fromkeys(n for one in slips(line) for n in slips(one)), MOST_PAIRS):
             yield from _with_lines(reading, numbers, {i: (name, line, new)})
-    for (i, one, first), (j, other, second) in combinations(own, 2):
+    for (i, one, first), (j, other, second) in combinations(lines, 2):
         for a, b in product(islice(slips(first), FEW_SLIPS), islice(slips(second), FEW_SLIPS)):
             yield from _with_lines(reading, numbers, {i: (one, first, a), j: (other, second, b)})
 
@@ -497,16 +497,16 @@ def _other_powers(part: Expression) -> Iterator[Expression]:
         yield of_powers(front, {b: n for b, n in powers.items() if b != base})
     for side in (1, -1):
         inside = product_of([base for base, n in powers.items() if n == side])
-        rest = {base: n for base, n in powers.items() if n != side}
-        yield of_powers(front, {**rest, Call("sqrt", inside): side})
+        other_powers = {base: n for base, n in powers.items() if n != side}
+        yield of_powers(front, {**other_powers, Call("sqrt", inside): side})
 
 
 def _other_lines(reading: FormulaReading, numbers: Numbers) -> Iterator[Correction]:
     """Yield two lines exchanged, a line times a number, its square or root, a square or 1 left out."""
-    own = [(i, *line) for i, line in enumerate(reading.formula.lines) if not _only_renames(line[1])]
-    for (i, one, first), (j, other, second) in combinations(own, 2):
+    lines = [(i, *line) for i, line in enumerate(reading.formula.lines) if not _only_renames(line[1])]
+    for (i, one, first), (j, other, second) in combinations(lines, 2):
         yield from _with_lines(reading, numbers, {i: (one, first, second), j: (other, second, first)})
-    for i, name, line in own:
+    for i, name, line in lines:
         for new in (*(_times(f, line) for f in FACTORS), Call("sqrt", line), Power(line, number(2))):
             yield from _with_lines(reading, numbers, {i: (name, line, new)})
         for part in nodes(line):

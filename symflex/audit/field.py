@@ -181,9 +181,9 @@ class Arithmetic:
         for number, sign in ((value.numerator, 1), (value.denominator, -1)):
             for prime, times in _primes(number):
                 power = sign * times * exponent
-                whole = power.numerator // power.denominator
-                part = power - whole
-                result = result * Fraction(prime) ** whole
+                integer = power.numerator // power.denominator
+                part = power - integer
+                result = result * Fraction(prime) ** integer
                 if part:
                     if prime not in self.ground.primes:
                         raise GrowError(self.ground.grown(primes=(*self.ground.primes, prime)))
@@ -269,10 +269,10 @@ class Arithmetic:
 
     def _sum_power(self, recipe: Recipe, exponent: Fraction) -> Factored:
         """Return a power of a polynomial, which is taken positive."""
-        whole = exponent.numerator // exponent.denominator
-        result = self.from_recipe(recipe) ** whole
-        rest = exponent - whole
-        return result * self._root_of_sum(recipe) ** self._steps(rest) if rest else result
+        integer = exponent.numerator // exponent.denominator
+        result = self.from_recipe(recipe) ** integer
+        fractional = exponent - integer
+        return result * self._root_of_sum(recipe) ** self._steps(fractional) if fractional else result
 
     def _root_of_sum(self, recipe: Recipe) -> Factored:
         """Return the generator that stands for the root of a polynomial."""
@@ -291,8 +291,8 @@ class Arithmetic:
                 return None
             for i, name in enumerate(g.names):
                 if name in g.rootable:
-                    exponents[i], rest = divmod(exponents[i], g.order)
-                    if rest:
+                    exponents[i], remainder = divmod(exponents[i], g.order)
+                    if remainder:
                         return None
             terms[tuple(exponents[:count])] = int(coefficient)
         return g.plain.context.from_dict(terms)
@@ -343,21 +343,21 @@ class Arithmetic:
         """Return real and imaginary part of an argument as integer multiples of the base arguments."""
         parts: tuple[list[tuple[int, int]], list[tuple[int, int]]] = ([], [])
         for (key, is_imaginary), coefficient in self._terms(argument).items():
-            place = next((i for i, w in enumerate(self.ground.waves) if w.key == key), None)
-            if place is None:
+            index = next((i for i, w in enumerate(self.ground.waves) if w.key == key), None)
+            if index is None:
                 wave = Wave(key, abs(coefficient))
                 raise GrowError(self.ground.grown(waves=(*self.ground.waves, wave)))
-            unit = self.ground.waves[place].unit
+            unit = self.ground.waves[index].unit
             n = coefficient / unit
             if n.denominator != 1:
                 below = coefficient.denominator * unit.denominator  # both are multiples of the new unit
                 finer = Wave(key, Fraction(gcd(int(coefficient * below), int(unit * below)), below))
-                waves = (*self.ground.waves[:place], finer, *self.ground.waves[place + 1 :])
+                waves = (*self.ground.waves[:index], finer, *self.ground.waves[index + 1 :])
                 raise GrowError(self.ground.grown(waves=waves))
             if abs(n) > MOST_MULTIPLES:
                 message = f"arguments of its functions are more than {MOST_MULTIPLES} times one another"
                 raise UnreadError(message)
-            parts[is_imaginary].append((place, int(n)))
+            parts[is_imaginary].append((index, int(n)))
         return parts
 
     def _terms(self, argument: Factored) -> dict[tuple[Key, bool], Fraction]:
@@ -383,9 +383,9 @@ class Arithmetic:
             exponents = [int(e) + outer.get(i, 0) for i, e in enumerate(monomial)]
             turns, exponents[unit] = exponents[unit] % 4, 0
             key, number = self._key(exponents)
-            place = key, bool(turns % 2)
+            term = key, bool(turns % 2)
             sign = -1 if turns >= SQUARE else 1
-            terms[place] = terms.get(place, Fraction(0)) + sign * number * int(coefficient) * common.unit
+            terms[term] = terms.get(term, Fraction(0)) + sign * number * int(coefficient) * common.unit
         return {key: value for key, value in terms.items() if value}
 
     def _key(self, exponents: Sequence[int]) -> tuple[Key, Fraction]:
@@ -396,10 +396,10 @@ class Arithmetic:
             if name == HOLE or name.startswith(("exp(", "cos(", "sin(")):
                 raise UnreadError("the argument of a function contains another function of s")
             if name.startswith("root("):
-                whole, rest = divmod(exponent, g.order)
-                number *= Fraction(int(name[5:-1])) ** whole
-                if rest:
-                    key.append((name, Fraction(rest, g.order)))
+                integer, remainder = divmod(exponent, g.order)
+                number *= Fraction(int(name[5:-1])) ** integer
+                if remainder:
+                    key.append((name, Fraction(remainder, g.order)))
             elif name in g.names and name not in g.rootable:
                 key.append((name, Fraction(exponent)))
             else:
@@ -479,14 +479,14 @@ def ground_of(parameters: Sequence[tuple[str, bool]]) -> Ground:
 
 def _primes(number: int) -> list[tuple[int, int]]:
     """Return the prime factors of a number; what has no small ones stays together."""
-    primes, rest, candidate = [], number, 2
-    while candidate <= LARGEST_PRIME and candidate * candidate <= rest:
+    primes, remaining, candidate = [], number, 2
+    while candidate <= LARGEST_PRIME and candidate * candidate <= remaining:
         times = 0
-        while rest % candidate == 0:
-            rest, times = rest // candidate, times + 1
+        while remaining % candidate == 0:
+            remaining, times = remaining // candidate, times + 1
         if times:
             primes.append((candidate, times))
         candidate += 1
-    if rest.bit_length() > LARGEST_COFACTOR_BITS:
+    if remaining.bit_length() > LARGEST_COFACTOR_BITS:
         raise UnreadError("it takes the root of a large number")
-    return [*primes, (rest, 1)] if rest > 1 else primes
+    return [*primes, (remaining, 1)] if remaining > 1 else primes

@@ -117,10 +117,12 @@ def _difference(audit: Audit, reading: FormulaReading | None, numbers: Numbers) 
 
 def _disagreeing_sums(published: Published, model: Model) -> Iterator[str]:
     """Yield every printed sum whose terms are in different units, as far as the declared ones tell."""
-    own = [Definition(name, expression) for name, expression in published.where]
-    hidden = {d.name for d in own}
+    printed_lines = [Definition(name, expression) for name, expression in published.where]
+    hidden = {d.name for d in printed_lines}
     inherited = [p for p in model.parameters if p.name not in hidden]
-    measure = constant_measure([], inherited, [*(d for d in model.definitions if d.name not in hidden), *own])
+    measure = constant_measure(
+        [], inherited, [*(d for d in model.definitions if d.name not in hidden), *printed_lines]
+    )
     roots = [published.expression, published.scale, *(e for _, e in published.where)]
     sums = dict.fromkeys(n for e in roots if e is not None for n in nodes(e) if isinstance(n, Sum))
     reported: list[Sum] = []

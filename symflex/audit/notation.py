@@ -126,10 +126,10 @@ def monomial_expression(field: Arithmetic, value: Factored) -> Expression | None
         if name.startswith(("exp(", "cos(", "sin(", "sum(", UNIT, HOLE)):
             return None
         if name.startswith("root("):
-            whole, rest = divmod(exponent, order)
-            coefficient *= Fraction(int(name[5:-1])) ** whole
-            if rest:
-                exponents[name[5:-1]] = Fraction(rest, order)
+            integer, remainder = divmod(exponent, order)
+            coefficient *= Fraction(int(name[5:-1])) ** integer
+            if remainder:
+                exponents[name[5:-1]] = Fraction(remainder, order)
         else:
             step = order if name in field.ground.rootable else 1
             exponents[name] = Fraction(exponent, step)
@@ -238,7 +238,7 @@ def _in_symbols(
     for factor, exponent in value.factors:
         for i in range(len(highest)):
             places = [field.ring.index[f"{f}({i})"] for f in ("exp", "cos", "sin")]
-            highest[i] += exponent * sum(int(factor.degrees()[place]) for place in places)
+            highest[i] += exponent * sum(int(factor.degrees()[index]) for index in places)
     shifts = [field.number(1)]
     for i, degree in enumerate(highest):
         e = Factored.generator(field.ring, f"exp({i})")

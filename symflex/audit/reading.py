@@ -147,8 +147,8 @@ class _FormulaReader:
             raise _division(expression, expression) from None
 
 
-def _division(part: Expression, whole: Expression) -> SpecError:
-    return SpecError(Diagnostic("SF224", "a printed formula divides by zero", part.span or whole.span))
+def _division(part: Expression, formula: Expression) -> SpecError:
+    return SpecError(Diagnostic("SF224", "a printed formula divides by zero", part.span or formula.span))
 
 
 def derived_value(field: Arithmetic, tf: TransferFunction) -> Factored:

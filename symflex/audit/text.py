@@ -86,9 +86,9 @@ def _marked(expression: Expression, parts: Sequence[tuple[str, Expression]], wid
     for i, line in enumerate(lines):
         marked.append(2 * INDENT + line)
         marks = [" "] * len(line)
-        for place, part in parts:
+        for side, part in parts:
             text = format_expression(part)
-            if place == "factor":
+            if side == "factor":
                 if i == 0 and line.startswith(text):
                     marks[: len(text)] = "^" * len(text)
                 continue

@@ -109,8 +109,8 @@ def _networks(content: _Content, spacing: Spacing) -> Iterator[_Row]:
             shared = dict.fromkeys(n for p in others for n in p.nodes if domains[n] == "plane")
             marks += tuple(name_of(n) for n in shared)
             nodes = {n for p in others for n in p.nodes} | {m.node for m in marks}
-            own = tuple(n for n in network.nodes if n in nodes)
-            network = replace(network, nodes=own, parts=tuple(others), marks=marks, spans=())
+            nodes_within = tuple(n for n in network.nodes if n in nodes)
+            network = replace(network, nodes=nodes_within, parts=tuple(others), marks=marks, spans=())
         shortened, gone = abbreviated(network, domains)
         row: Sequence[Placed] = lay_out(shortened, domains, spacing)
         is_up = content.model.drawing.is_up and all(domains[n] == "translation" for n in shortened.nodes)

@@ -132,8 +132,8 @@ def tags_of(part: DrawnPart) -> list[Built]:
     """Return what shows or reads what a part carries, with arrows; before it, a support's own name."""
     tags = []
     if part.symbol.role == "support" and len(part.ends) == 1 and (called := text(part.label, SMALL)):
-        own = Placed("label", part.name, (), (called,))
-        tags.append(Built(called.width + 10, (own.moved(-5, 0),), -called.depth, called.height))
+        tag = Placed("label", part.name, (), (called,))
+        tags.append(Built(called.width + 10, (tag.moved(-5, 0),), -called.depth, called.height))
     for kind, name, label in part.tags:
         if shown := text(label, SMALL):
             pointer = Placed(kind, name, arrow((-10, shown.height / 2), (-2, shown.height / 2), THIN))
@@ -210,8 +210,8 @@ def _signs(cell: SymbolCell, start: float, length: float) -> list[Placed]:
     x = start + length * (0.73 if cell.is_reversed else 0.27)
     for end, sign in zip(cell.part.ends, ("+", "-"), strict=False):
         side = cell.left if any(e is end for e in cell.left) else cell.right
-        place = next(i for i, e in enumerate(side) if e is end)
-        y = max(-USUAL_PITCH / 2, min(USUAL_PITCH / 2, cell.offsets(side)[place]))
+        index = next(i for i, e in enumerate(side) if e is end)
+        y = max(-USUAL_PITCH / 2, min(USUAL_PITCH / 2, cell.offsets(side)[index]))
         if written := text(sign, SMALL):
             low = y - (written.height - written.depth) / 2
             signs.append(Placed("label", cell.part.name, (), (written.moved(x - written.width / 2, low),)))
@@ -287,10 +287,10 @@ def _points(cell: SymbolCell, start: float, length: float) -> list[Placed]:
         tip = half_depth(part.depths, (x - start) / length)
         y = tip + 5.8 + 10 * level
         arrow_down = (line((x, tip + 0.8), (x, y), width=THIN), head((x, tip), (0, -1), 3.0))
-        place = shown.moved(low, y + 1.5 + shown.depth)
+        placed_label = shown.moved(low, y + 1.5 + shown.depth)
         if beyond - x > SPACE:
-            marks += [Placed("output", name, arrow_down), Placed("label", name, (), (place,))]
+            marks += [Placed("output", name, arrow_down), Placed("label", name, (), (placed_label,))]
             beyond = x
         else:
-            marks.append(Placed("output", name, (), (place,)))  # at the arrow of the one beside it
+            marks.append(Placed("output", name, (), (placed_label,)))  # at the arrow of the one beside it
     return marks

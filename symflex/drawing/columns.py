@@ -165,9 +165,9 @@ def _mass(part: DrawnPart, column: Column, y0: float, y1: float) -> list[Placed]
     label = label_of(part)
     label = label.moved(x, middle - label.box.centre[1])
     if offset := text(part.centre[0], SMALL):
-        left = x + 2.5 - (offset.width + 5 if part.centre[1] > 0 else 0.0)
-        own = offset.moved(left, y0 + 6 - (offset.height - offset.depth) / 2)
-        label = replace(label, texts=(*label.texts, own))
+        label_x = x + 2.5 - (offset.width + 5 if part.centre[1] > 0 else 0.0)
+        moved = offset.moved(label_x, y0 + 6 - (offset.height - offset.depth) / 2)
+        label = replace(label, texts=(*label.texts, moved))
     return [Placed(part.kind, part.name, strokes), label]
 
 
@@ -250,8 +250,8 @@ def mark_of_source(part: DrawnPart, *, is_flat: bool = True) -> Mark:
     end = part.ends[0]
     style: Style = "push" if is_flat and end.component != "x" else "force"
     label = r",\,".join((part.label, *part.lines))
-    own = (("element", part.name, label), *part.tags)
-    return Mark("torque" if end.domain == "rotation" else style, end.node, own)
+    parts = (("element", part.name, label), *part.tags)
+    return Mark("torque" if end.domain == "rotation" else style, end.node, parts)
 
 
 def upright_mark(mark: Mark, x: float, foot: float) -> list[Placed]:

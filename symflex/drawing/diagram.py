@@ -54,28 +54,28 @@ def diagrams(graph: SignalGraph, widest: float) -> list[list[Placed]]:
     bands = []
     while path := _longest(graph, drawn, joined):
         tags = frozenset(drawn.intersection(path))
-        whole = _Band(graph, path, tags, set(drawn), set(joined))
-        if whole.box.width <= widest:
-            drawn |= whole.drawn
-            joined |= whole.joined
-            bands.append(whole.items)
+        one_band = _Band(graph, path, tags, set(drawn), set(joined))
+        if one_band.box.width <= widest:
+            drawn |= one_band.drawn
+            joined |= one_band.joined
+            bands.append(one_band.items)
             continue
         drawn.update(path)
         joined.update(pairwise(path))
         pieces: list[_Band] = []
-        for piece in _cut(graph, whole, widest - 2 * TURN):
+        for piece in _cut(graph, one_band, widest - 2 * TURN):
             before = pieces[-1].path[-1] if pieces else None
             pieces.append(_Band(graph, piece, tags.intersection(piece), drawn, joined, before))
         bands.append(_wrapped(pieces))
     return bands
 
 
-def _cut(graph: SignalGraph, whole: _Band, widest: float) -> list[list[int]]:
+def _cut(graph: SignalGraph, band: _Band, widest: float) -> list[list[int]]:
     """Return a path in pieces that are narrow enough, where a node alone is; none begins with a signal."""
     pieces: list[list[int]] = []
     start = 0.0
-    for node in whole.path:
-        begin, end = whole.x[node]
+    for node in band.path:
+        begin, end = band.x[node]
         is_wide = end - start > widest and graph.nodes[node].kind not in ("signal", "output")
         if not pieces or is_wide:
             pieces.append([])
@@ -87,15 +87,15 @@ def _cut(graph: SignalGraph, whole: _Band, widest: float) -> list[list[int]]:
 def _wrapped(bands: list[_Band]) -> list[Placed]:
     """Return the pieces of a path below each other, joined by wires back to the left."""
     last, (shift, level), edge = bands[0], (0.0, 0.0), bands[0].box
-    items, left = list(last.items), edge.x0
+    items, edge_x = list(last.items), edge.x0
     for band in bands[1:]:
         below = edge.y0 - TURN
-        dx, dy = left + TURN - band.box.x0, below - band.box.y1
+        dx, dy = edge_x + TURN - band.box.x0, below - band.box.y1
         far, between = edge.x1 + TURN / 2, below + TURN / 2
         start = last.x[last.path[-1]][1] + shift
-        route = ((start, level), (far, level), (far, between), (left, between), (left, dy))
+        route = ((start, level), (far, level), (far, between), (edge_x, between), (edge_x, dy))
         first = band.path[0]
-        items.append(Placed("wire", "", (line(*route), *arrow((left, dy), (dx + band.x[first][0], dy)))))
+        items.append(Placed("wire", "", (line(*route), *arrow((edge_x, dy), (dx + band.x[first][0], dy)))))
         items += [i.moved(dx, dy) for i in band.items]
         last, (shift, level), edge = band, (dx, dy), band.box.moved(dx, dy)
     return items
@@ -314,15 +314,15 @@ class _Band:
         left, right = self.x[origin]
         return right if left > centre else left
 
-    def _slack(self, branch: _Branch, shown: Sequence[Built], place: Point, spare: float) -> float:
+    def _slack(self, branch: _Branch, shown: Sequence[Built], anchor: Point, spare: float) -> float:
         """Return how far from its sum a branch bends: such that wires up and down meet little on it."""
         is_loose, sign = branch.origin is None, 1.0 if spare >= 0 else -1.0
 
         def met(slack: float) -> int:
-            x, count = place[0] + sign * (slack + WIRE), 0
+            x, count = anchor[0] + sign * (slack + WIRE), 0
             for node, one in zip(branch.nodes, shown, strict=True):
                 low, high = sorted((x, x + sign * one.width))
-                box = Extent(low, place[1] + one.below, high, place[1] + one.above)
+                box = Extent(low, anchor[1] + one.below, high, anchor[1] + one.above)
                 if len(self.graph.nodes[node].before) == MOST_AT_SUM:  # a sum with wires up and down
                     line_up = Extent(low + RADIUS - 1, -1e4, high - RADIUS + 1, 1e4)
                     count += sum(b.overlaps(line_up) for b in self.solid)
@@ -425,12 +425,12 @@ def _boxed(one: SignalNode, shown: Lettering | None, name: Lettering | None) -> 
     wide, tall = max(16.0, block.width + 2 * EDGE), max(7.0, block.height / 2 + EDGE)
     items = [Placed(one.kind, one.name, (rectangle(0.0, -tall, wide, tall),))]
     if texts:
-        place = wide / 2, -(block.y0 + block.y1) / 2
-        items.append(Placed("label", one.name, (), tuple(t.moved(*place) for t in texts)))
+        offset = wide / 2, -(block.y0 + block.y1) / 2
+        items.append(Placed("label", one.name, (), tuple(t.moved(*offset) for t in texts)))
     above = tall
     if name:
-        place = (wide - name.width) / 2, tall + 2 + name.depth
-        items.append(Placed("label", one.name, (), (name.moved(*place),)))
+        offset = (wide - name.width) / 2, tall + 2 + name.depth
+        items.append(Placed("label", one.name, (), (name.moved(*offset),)))
         above += name.height + name.depth + 2
     return Built(wide, tuple(items), -tall, above)
 

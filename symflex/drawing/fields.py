@@ -73,7 +73,7 @@ class FieldRow:
 def field_rows(model: Model, labels: Labels, outputs: Sequence[str]) -> list[FieldRow]:
     """Return the fields of a model in rows."""
     rows: list[FieldRow] = []
-    left = list(outputs)
+    remaining = list(outputs)
     inputs = [i.name for i in model.inputs if i.kind == "signal"]
     groups: list[list[FieldProblem]] = []  # of which each begins where the one before it ends
     for one in model.fields:
@@ -82,8 +82,8 @@ def field_rows(model: Model, labels: Labels, outputs: Sequence[str]) -> list[Fie
             groups.append(before)
         before.append(one)
     for group in groups:
-        row = _Row(model, labels, group, left, inputs).laid_out()
-        left = [o for o in left if o not in row.outputs]
+        row = _Row(model, labels, group, remaining, inputs).laid_out()
+        remaining = [o for o in remaining if o not in row.outputs]
         inputs = [i for i in inputs if i not in row.inputs]
         rows.append(row)
     return rows
@@ -284,8 +284,8 @@ class _Row:
             arrows += tuple(s for x in xs for s in arrow((x, foot), (x, foot + 10), THIN))
             self.items.append(Placed("input", name, arrows))
             if shown := text(self._label(name)):
-                place = shown.moved((low + high - shown.width) / 2, foot + 13 + shown.depth)
-                self.items.append(Placed("label", name, (), (place,)))
+                label = shown.moved((low + high - shown.width) / 2, foot + 13 + shown.depth)
+                self.items.append(Placed("label", name, (), (label,)))
             above = foot + 24
 
     def _draw_coordinate(self) -> None:

@@ -68,27 +68,27 @@ class _Plan:
         if not self.is_sound:
             return
         pairs = [pair for p in self.members for pair in zip(p.ends, self.ends[p.name], strict=True)]
-        at = {end.node: place for end, place in pairs if end.node}
+        at = {end.node: point for end, point in pairs if end.node}
         # What a joint holds, such as a cart below its pole, has the place of the member's end.
-        at = {self.joint(node): place for node, place in at.items()} | at
+        at = {self.joint(node): point for node, point in at.items()} | at
         self.at = {n: at[self.joint(n)] for n in self.network.nodes if self.joint(n) in at}
         self.at = at | self.at
         self.others = [p for p in self.network.parts if not self._belongs(p)]
-        own = [p for p in self.network.parts if p not in self.others]
-        self._draw_bodies([p for p in own if p.symbol.role == "body"])
+        planned = [p for p in self.network.parts if p not in self.others]
+        self._draw_bodies([p for p in planned if p.symbol.role == "body"])
         for x, y in filter(self._is_rigid, dict.fromkeys(self.at.values())):
             self.items.append(Placed("node", "", (circle(x, y, HALF, FILLED),)))
         for part in self.members:
             self._draw_member(part)
         self._draw_joints()
-        for part in (p for p in own if p.symbol.role == "support"):
+        for part in (p for p in planned if p.symbol.role == "support"):
             self._draw_support(part)
-        for part in (p for p in own if p.type_name in ALONE):
+        for part in (p for p in planned if p.type_name in ALONE):
             if part.type_name == "torsion_spring":
                 self._draw_spiral(part)
             else:
                 self._draw_grounded(part)
-        sources = [mark_of_source(p) for p in own if p.symbol.role == "source"]
+        sources = [mark_of_source(p) for p in planned if p.symbol.role == "source"]
         for mark in (m for m in (*sources, *self.network.marks) if m.node in self.at):
             self._draw_mark(mark)
         for part in self.members:
@@ -138,11 +138,11 @@ class _Plan:
         scale = max(scale, SHORTEST / least) if least > SAME else scale
         return {n: ((a[0] * scale, a[1] * scale), (b[0] * scale, b[1] * scale)) for n, (a, b) in ends.items()}
 
-    def _is_rigid(self, place: Point) -> bool:
+    def _is_rigid(self, point: Point) -> bool:
         """Tell whether members run into each other at a place, without a body or a hinge."""
         hinges = (p.nodes for p in self.network.parts if p.symbol.role == "support" and len(p.nodes) > 1)
         held = (self.at[n] for n in (*self.radius, *(n for pair in hinges for n in pair)) if n in self.at)
-        return self._meeting(place) > 1 and not any(_is_near(one, place) for one in held)
+        return self._meeting(point) > 1 and not any(_is_near(one, point) for one in held)
 
     def _draw_joints(self) -> None:
         for part in (p for p in self.members if p.type_name == "frame"):  # over the ends of other members
@@ -169,7 +169,7 @@ class _Plan:
             if any(a.overlaps(b) for a in pieces[0] for b in pieces[1]):
                 return False
         pairs = (pair for p in self.members for pair in zip(p.ends, self.ends[p.name], strict=True))
-        clamps = [place for end, place in pairs if not end.node]
+        clamps = [point for end, point in pairs if not end.node]
         return all(dist(a, b) > 2 * CLAMP for a, b in combinations(clamps, 2))
 
     # ------------------------------------------------------------------------------------------- drawing
@@ -192,17 +192,17 @@ class _Plan:
 
     def _draw_bodies(self, bodies: Sequence[DrawnPart]) -> None:
         for node in dict.fromkeys(p.nodes[0] for p in bodies):
-            own = [p for p in bodies if p.nodes[0] == node]
-            written = [r",\,".join(one for one in (p.label, p.centre[0]) if one) for p in own]
-            labels = [label_of(replace(p, label=one)) for one, p in zip(written, own, strict=True)]
+            of_node = [p for p in bodies if p.nodes[0] == node]
+            written = [r",\,".join(one for one in (p.label, p.centre[0]) if one) for p in of_node]
+            labels = [label_of(replace(p, label=one)) for one, p in zip(written, of_node, strict=True)]
             blocks = [label.box for label in labels]
             wide = max(14.0, *(b.width + 6 for b in blocks))
-            wheels = [p.type_name == "inertia" for p in own]
+            wheels = [p.type_name == "inertia" for p in of_node]
             heights = [wide if w else max(13.0, b.height + 6) for w, b in zip(wheels, blocks, strict=True)]
             x, y = self.at[node]
             top = y + sum(heights) / 2
             self.radius[node] = (wide / 2, sum(heights) / 2)
-            for part, label, height in zip(own, labels, heights, strict=True):
+            for part, label, height in zip(of_node, labels, heights, strict=True):
                 shape = rectangle(x - wide / 2, top - height, x + wide / 2, top, FILLED)
                 if part.type_name == "inertia":
                     shape = circle(x, top - height / 2, wide / 2, FILLED)
@@ -210,13 +210,13 @@ class _Plan:
                 self._add(label.moved(x, top - height / 2 - label.box.centre[1]))
                 top -= height
 
-    def _meeting(self, place: Point) -> int:
+    def _meeting(self, point: Point) -> int:
         """Return how many members meet at a place."""
-        return sum(_is_near(end, place) for pair in self.ends.values() for end in pair)
+        return sum(_is_near(end, point) for pair in self.ends.values() for end in pair)
 
-    def _body_at(self, place: Point) -> tuple[float, float]:
+    def _body_at(self, point: Point) -> tuple[float, float]:
         """Return half the width and height of the body at a place, noughts where there is none."""
-        found = [size for node, size in self.radius.items() if self.at[node] == place]
+        found = [size for node, size in self.radius.items() if self.at[node] == point]
         return found[-1] if found else (0.0, 0.0)
 
     def _shortened(self, part: DrawnPart) -> tuple[Point, Point]:
@@ -224,12 +224,12 @@ class _Plan:
         a, b = self.ends[part.name]
         size, d = _direction(a, b)
         cuts = []
-        for end, place, sign in ((part.ends[0], a, 1.0), (part.ends[1], b, -1.0)):
+        for end, point, sign in ((part.ends[0], a, 1.0), (part.ends[1], b, -1.0)):
             wide, tall = self._body_at(self.at[end.node]) if end.node else (0.0, 0.0)
             reach = [h / abs(c) for h, c in ((wide, d[0]), (tall, d[1])) if abs(c) > SAME]
             meets = end.node and self._meeting(self.at[end.node]) > 1
-            cut = min(reach) if wide else JOINT + 0.6 if meets and not self._is_rigid(place) else 0.0
-            others = self._directions(place, but=part.name)
+            cut = min(reach) if wide else JOINT + 0.6 if meets and not self._is_rigid(point) else 0.0
+            others = self._directions(point, but=part.name)
             cosines = (sign * (d[0] * e[0] + d[1] * e[1]) for e in others)
             narrow = min((acos(max(-1.0, min(1.0, c))) for c in cosines), default=pi)
             cuts.append(max(cut, min(HALF / tan(narrow / 2), size / 3)) if narrow < SHARP else cut)
@@ -251,11 +251,11 @@ class _Plan:
                 clamp = Placed("ground", "", wall(-CLAMP, CLAMP, 1)).rotated(sign * dx, sign * dy)
                 self._add(clamp.moved(*at))
 
-    def _directions(self, place: Point, but: str = "") -> list[Point]:
+    def _directions(self, point: Point, but: str = "") -> list[Point]:
         """Return the directions of members from where they meet, but for one."""
         ends = [pair for name, pair in self.ends.items() if name != but]
         pairs = (pair for a, b in ends for pair in ((a, b), (b, a)))
-        return [_direction(*pair)[1] for pair in pairs if _is_near(pair[0], place)]
+        return [_direction(*pair)[1] for pair in pairs if _is_near(pair[0], point)]
 
     def _free_directions(self, node: str) -> list[Point]:
         """Return directions from a node, the one farthest from its members first."""
@@ -289,10 +289,10 @@ class _Plan:
             directions = [d for d in directions if bool(d[0]) is (component == "x")]
         for d in directions:
             surface = self._surface(node, d)
-            start, place = ((x + d[0] * r, y + d[1] * r) for r in (surface, surface + CLEAR))
-            turned = symbol.rotated(-d[1], d[0]).moved(*place)
+            start, foot = ((x + d[0] * r, y + d[1] * r) for r in (surface, surface + CLEAR))
+            turned = symbol.rotated(-d[1], d[0]).moved(*foot)
             if self._is_free([turned]):
-                self._add(turned, Placed("wire", node, (line(start, place),)))
+                self._add(turned, Placed("wire", node, (line(start, foot),)))
                 break
         else:
             self._beside([symbol], node)
@@ -344,13 +344,13 @@ class _Plan:
 
     def _hinge(self, node: str) -> Point:
         """Return where a member or spring turns about what a joint holds: the surface of a body there."""
-        place = self.at[node]
-        has_body = any(self.at[other] == place for other in self.radius)
+        point = self.at[node]
+        has_body = any(self.at[other] == point for other in self.radius)
         for part in self.members if has_body and self.joint(node) != node else ():
             for end, at in zip(part.ends, self._shortened(part), strict=True):
                 if end.node == node:
                     return at
-        return place
+        return point
 
     def _draw_spiral(self, part: DrawnPart) -> None:
         """Draw a torsion spring round the joint that it acts on; its outer end may be held by the ground."""
@@ -427,17 +427,17 @@ class _Plan:
                 tip = (x + 3.0 * m[0], y + 3.0 * m[1])
                 stem = line((x + distance * m[0], y + distance * m[1]), tip, width=THIN)
                 cx, cy = shown.box.centre
-                place = shown.moved(x + far * m[0] - cx, y + far * m[1] - cy)
+                placed = shown.moved(x + far * m[0] - cx, y + far * m[1] - cy)
                 marker = Placed("output", name, (stem, head(tip, (-m[0], -m[1]), 3.0)))
-                options.append([marker, Placed("label", name, (), (place,))])
+                options.append([marker, Placed("label", name, (), (placed,))])
             self._add(*next(filter(self._is_free, options), options[-1]))
-        own = label_of(part)
-        (x, y), near = own.box.centre, _reach(own.box, n) + HALF + 2.5
+        lettering = label_of(part)
+        (x, y), near = lettering.box.centre, _reach(lettering.box, n) + HALF + 2.5
         tried = product((0.0, 6.0, 14.0, 26.0, 40.0), (0.5, 0.38, 0.62, 0.25, 0.75), (1.0, -1.0))
         places = ((share * size, sign * (near + more)) for more, share, sign in tried)
         moves = ((a[0] + u * d[0] + v * n[0], a[1] + u * d[1] + v * n[1]) for u, v in places)
-        own = own.moved(-x, -y)
-        self._add(own.moved(*self._first_free([own], moves)))
+        lettering = lettering.moved(-x, -y)
+        self._add(lettering.moved(*self._first_free([lettering], moves)))
         for one in tags_of(part):
             self._near(one.placed, _about((a[0] + 0.5 * size * d[0], a[1] + 0.5 * size * d[1]), 4.0, 4.0))
 

@@ -133,10 +133,10 @@ class Placed:
         return self._mapped(lambda x, y: (x + dx, y + dy), (t.moved(dx, dy) for t in self.texts))
 
     def _mapped(
-        self, place: Callable[[float, float], Point], texts: Iterable[Lettering], by: float = 1.0
+        self, image: Callable[[float, float], Point], texts: Iterable[Lettering], by: float = 1.0
     ) -> Placed:
         """Return the part with every point of its strokes elsewhere, its lines thicker, and other texts."""
-        moved = ((tuple(place(*p) for p in s.points), s) for s in self.strokes)
+        moved = ((tuple(image(*p) for p in s.points), s) for s in self.strokes)
         strokes = tuple(replace(s, points=points, width=by * s.width) for points, s in moved)
         return replace(self, strokes=strokes, texts=tuple(texts))
 
@@ -176,10 +176,12 @@ def upright(items: Sequence[Placed]) -> Sequence[Placed]:
         runs = [*runs[:-1], [*runs[-1], item]] if 0 < gap < NEXT else [*runs, [item]]
     standing: list[Placed] = []
     for run in runs:
-        own = union(around(s.points) for i in items if i.name == run[0].name for s in i.strokes)
+        extent = union(around(s.points) for i in items if i.name == run[0].name for s in i.strokes)
         box = union(t.box for item in run for t in item.texts)
         (x, y), longer = box.centre, (box.width - box.height) / 2
-        aside, along = ((z > high) - (z < low) for z, low, high in ((y, own.y0, own.y1), (x, own.x0, own.x1)))
+        aside, along = (
+            (z > high) - (z < low) for z, low, high in ((y, extent.y0, extent.y1), (x, extent.x0, extent.x1))
+        )
         # Above an arrow a long text ends not far beyond it.
         dx = -y - (aside * longer if aside else max(0.0, box.width / 2 - BEYOND) * along)
         dy = x if aside else x - along * longer

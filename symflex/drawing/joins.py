@@ -148,12 +148,12 @@ def _way(
             continue
         seen.add((cell, d))
         if cell in ends and _leads(_centre(cell), d, ends[cell]):
-            points, place = [ends[cell]], (cell, d)
-            while (earlier := before[place]) is not None:
-                if earlier[1] != place[1]:
+            points, state = [ends[cell]], (cell, d)
+            while (earlier := before[state]) is not None:
+                if earlier[1] != state[1]:
                     points.append(_centre(earlier[0]))
-                place = earlier
-            return [starts[place[0]], *reversed(points[1:]), points[0]]
+                state = earlier
+            return [starts[state[0]], *reversed(points[1:]), points[0]]
         paid = best[cell, d] + 1
         for turn, (dx, dy) in enumerate(STEPS):
             other = (cell[0] + dx, cell[1] + dy)

@@ -125,8 +125,8 @@ def abbreviated(network: DrawnNetwork, domains: Mapping[str, str]) -> tuple[Draw
             is_far = any(abs(at[n] - at[node]) > 1 for n in part.nodes)
             if is_far or part.tags or part.points or part.kind != "element" or part.symbol.role == "source":
                 return None
-        own = [p.type_name for p in touching[node] if all(at[n] >= at[node] for n in p.nodes)]
-        return None if node in marked else sorted(own)
+        types = [p.type_name for p in touching[node] if all(at[n] >= at[node] for n in p.nodes)]
+        return None if node in marked else sorted(types)
 
     def bodies(node: str) -> list[str]:
         return [p.type_name for p in touching[node] if p.symbol.role == "body"]

@@ -74,9 +74,9 @@ def figure_of(drawing: Drawing) -> Figure:
                 )
             )
         for j, shown in enumerate(item.texts):
-            place = (shown.x / across, shown.y / up)
+            position = (shown.x / across, shown.y / up)
             # An input of a block diagram is a name at the beginning of a wire.
             is_first = j == 0 and not item.strokes and item.kind in TITLED
             gid = f"{item.kind}.{item.name}.{i}" if is_first else None
-            figure.text(*place, shown.markup, gid=gid, fontsize=shown.size, ha="left", va="baseline")
+            figure.text(*position, shown.markup, gid=gid, fontsize=shown.size, ha="left", va="baseline")
     return figure

@@ -144,13 +144,13 @@ class _Layout:
         for cells in self.direct:
             # The length of a member that is alone in its gap is a dimension, instead of in its label.
             members = [c for c in cells if isinstance(c, SymbolCell) and c.is_member]
-            length, rest = members[0].part.dimension if len(members) == 1 else ("", "")
+            length, surplus = members[0].part.dimension if len(members) == 1 else ("", "")
             if (shown := text(length)) and shown.width <= WIDEST_LENGTH:
                 cell, part = members[0], members[0].part
                 left, right = (next((e.node for e in side if e.node), "") for side in (cell.left, cell.right))
-                lines = () if rest else part.lines
+                lines = () if surplus else part.lines
                 self.spans.append(Distance((left, right), part.name, length, lines, is_length=True))
-                cell.part = replace(part, label=rest)
+                cell.part = replace(part, label=surplus)
 
     def _sort_grounded(self, part: DrawnPart, index: int) -> None:
         """Place what lies between a node and the ground, or two components of a node."""

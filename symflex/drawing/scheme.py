@@ -184,10 +184,10 @@ def with_readings(scheme: Scheme, readings: Sequence[str], labels: Labels) -> Sc
                 style = _style(end, scheme.domains)
                 at = next((m for m in net.marks if (m.style, m.node) == (style, owner)), None)
                 marks = [m for m in net.marks if m is not at]
-                place = net.marks.index(at) if at else len(marks)
+                index = net.marks.index(at) if at else len(marks)
                 beside = at.labels if at else ()
                 if all(label != shown[2] for *_, label in beside):
-                    marks.insert(place, Mark(style, owner, (*beside, shown)))
+                    marks.insert(index, Mark(style, owner, (*beside, shown)))
                     networks[i] = replace(net, marks=tuple(marks))
             elif component and any(p.name == owner for p in net.parts):
                 parts = [replace(p, tags=(*p.tags, shown)) if p.name == owner else p for p in net.parts]
@@ -211,15 +211,15 @@ class _Collected:
         of_signals = signals & {n.name for n in names(core) if isinstance(n, Name)}
         end = None if of_signals else _node(core, domains)
         pair = None if of_signals else _difference(core, domains)
-        place = _place(out.expression)
+        call = _place(out.expression)
         shown = ("output", out.name, label)
         if end:
             self.seen.setdefault((_style(end, domains), end.node), []).append(shown)
         elif pair:
             self.spans.append(Distance(pair, out.name, label))
         elif not (isinstance(core, Attribute) and self._tag(core.owner, shown)):
-            point = (_share(model, place), out.name, label) if place else None
-            if not (place and point and self._write(place.name.partition(".")[0], points=(point,))):
+            point = (_share(model, call), out.name, label) if call else None
+            if not (call and point and self._write(call.name.partition(".")[0], points=(point,))):
                 self.others.append(out.name)
 
     def _write(self, name: str, tags: Tags = (), points: tuple[tuple[float, str, str], ...] = ()) -> bool:
@@ -325,11 +325,11 @@ def sections(
 def _end(reference: NodeReference, domain: str, domains: Domains) -> End:
     if reference.is_ground:
         return End(GROUND, "translation" if domain in COMPONENTS else domain)
-    own = domains[reference.node]
+    node_domain = domains[reference.node]
     component = reference.component
     if domain in COMPONENTS:
         return End(reference.node, "translation", component)
-    if own in COMPONENTS and not component:
+    if node_domain in COMPONENTS and not component:
         component = "theta" if domain == "rotation" else "y"
     return End(reference.node, COMPONENT_DOMAIN[component] if component else domain, component)
 
@@ -407,12 +407,12 @@ def without_s(expression: Expression) -> Expression:
     if not isinstance(expression, Product):
         return expression
     s = Name("s")
-    rest = [
+    factors = [
         f
         for f in expression.factors
         if f != s and not (isinstance(f, Power) and f.base == s and isinstance(f.exponent, Number))
     ]
-    return rest[0] if len(rest) == 1 else expression
+    return factors[0] if len(factors) == 1 else expression
 
 
 def _node(expression: Expression, domains: Domains) -> End | None:
@@ -453,15 +453,15 @@ def _place(expression: Expression) -> Call | None:
     return calls[0] if len(calls) == 1 and not varying and inner == calls[0] else None
 
 
-def _share(model: Model, place: Call) -> float:
+def _share(model: Model, call: Call) -> float:
     """Return where a point lies along an element, as a share of its length; a half where that is unknown."""
-    use = next(e for e in model.elements if e.name == place.name.partition(".")[0])
+    use = next(e for e in model.elements if e.name == call.name.partition(".")[0])
     length = dict(use.values)["l"]
     values = values_of(model)
-    at, whole = evaluate(place.argument, values), evaluate(length, values)
-    if at is None or not whole:
+    at, extent = evaluate(call.argument, values), evaluate(length, values)
+    if at is None or not extent:
         return 0.5
-    return min(1.0, max(0.0, at / whole))
+    return min(1.0, max(0.0, at / extent))
 
 
 def values_of(model: Model) -> dict[str, float]:
@@ -514,12 +514,12 @@ def _networks(
         together.update(dict.fromkeys(joined, joined))
     networks = [
         DrawnNetwork(
-            tuple(n for n in nodes if n in own),
-            tuple(p for p in parts if own.intersection(p.nodes)),
-            tuple(m for m in marks if m.node in own),
-            tuple(s for s in spans if own.issuperset(s.nodes)),
+            tuple(n for n in nodes if n in nodes_joined),
+            tuple(p for p in parts if nodes_joined.intersection(p.nodes)),
+            tuple(m for m in marks if m.node in nodes_joined),
+            tuple(s for s in spans if nodes_joined.issuperset(s.nodes)),
         )
-        for own in dict.fromkeys(together.values())
+        for nodes_joined in dict.fromkeys(together.values())
     ]
     loose = tuple(p for p in parts if not p.nodes)
     return (*networks, DrawnNetwork((), loose, (), ())) if loose else tuple(networks)

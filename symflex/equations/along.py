@@ -52,7 +52,7 @@ class AlongX:
         """Return a value at a point, an expression without the coordinate."""
         if not self.varies(value):
             return value
-        place = {COORDINATE: point}
+        position = {COORDINATE: point}
         images = {COORDINATE: self.evaluator.constant(point)}
-        images |= {n: self.evaluator.constant(substitute(call, place)) for n, call in self.functions}
+        images |= {n: self.evaluator.constant(substitute(call, position)) for n, call in self.functions}
         return composed(value, images)

@@ -120,8 +120,8 @@ def assemble(
     distributed = _Assembly(model, ring, constants, nested).survey(
         is_nameless=is_nameless, is_cut=is_cut, is_followed=is_followed
     )
-    whole = ring if distributed is None else distributed.propagation.ring
-    return _Assembly(model, whole, constants, nested, distributed, is_cut).run()
+    full_ring = ring if distributed is None else distributed.propagation.ring
+    return _Assembly(model, full_ring, constants, nested, distributed, is_cut).run()
 
 
 def _too_large(message: str, hint: str) -> BudgetError:
@@ -253,8 +253,19 @@ class _Assembly:
         scope = scope_of(self.model)
         fields = {*scope.unknowns, *scope.along}
         value = None if self.distributed is None else self._at_point
-        own = self.ring, scope, blocks, self.through, definitions, point, prime, fields, self._radicals, value
-        return ExactEvaluator(*own, root=self.model.root, varying=self._varying), point
+        arguments = (
+            self.ring,
+            scope,
+            blocks,
+            self.through,
+            definitions,
+            point,
+            prime,
+            fields,
+            self._radicals,
+            value,
+        )
+        return ExactEvaluator(*arguments, root=self.model.root, varying=self._varying), point
 
     def _at_point(self, call: Call) -> LinearForm:
         """Return the value at a point along x that a call names."""
@@ -262,23 +273,23 @@ class _Assembly:
             raise TypeError("without kernels nothing has a value at a point")
         if not self.is_cut:
             return self.distributed.value(call, self.states)
-        place = self.distributed.place(call)
-        return place.value(self._state_at(place), self.distributed.propagation)
+        along = self.distributed.place(call)
+        return along.value(self._state_at(along), self.distributed.propagation)
 
-    def _state_at(self, place: AlongPoint) -> State:
+    def _state_at(self, along: AlongPoint) -> State:
         """Return the state at a point, unknowns of its own unless the point is an end."""
         one = Factored.number(self.ring, 1)
-        if place.at.is_zero:
-            initial = place.initial or self.states[place.owner]
+        if along.at.is_zero:
+            initial = along.initial or self.states[along.owner]
             return tuple((v, one) for v in initial)
-        if place.owner in self.lines and (place.at - place.length).is_zero:
-            element, use = self.lines[place.owner]
+        if along.owner in self.lines and (along.at - along.length).is_zero:
+            element, use = self.lines[along.owner]
             return tuple(element.final_state(use))
-        cuts = self.cuts.setdefault(place.owner, [])
-        cut = next((c for c in cuts if (c.at - place.at).is_zero), None)
+        cuts = self.cuts.setdefault(along.owner, [])
+        cut = next((c for c in cuts if (c.at - along.at).is_zero), None)
         if cut is None:
-            names = place.medium.system.states
-            cut = Cut(place.at, tuple(Variable("field", place.owner, f"{n}({len(cuts) + 1})") for n in names))
+            names = along.medium.system.states
+            cut = Cut(along.at, tuple(Variable("field", along.owner, f"{n}({len(cuts) + 1})") for n in names))
             cuts.append(cut)
             self.unknowns += cut.state
         return tuple((v, one) for v in cut.state)
@@ -288,15 +299,19 @@ class _Assembly:
         from symflex.equations.distributed import guess  # loaded with what is cut
 
         numbers = {p.name: p.value for p in self.model.parameters}
-        for whole in self.continua:
-            cuts = sorted(self.cuts.get(whole.name, ()), key=lambda c: guess(c.at, numbers))
-            at, state = whole.start * 0, whole.initial
+        for continuum in self.continua:
+            cuts = sorted(self.cuts.get(continuum.name, ()), key=lambda c: guess(c.at, numbers))
+            at, state = continuum.start * 0, continuum.initial
             for cut in cuts:
                 final = tuple((v, 1) for v in cut.state)
-                yield replace(whole, start=whole.start + at, length=cut.at - at, initial=state, final=final)
+                yield replace(
+                    continuum, start=continuum.start + at, length=cut.at - at, initial=state, final=final
+                )
                 at, state = cut.at, cut.state
-            if whole.final:
-                yield replace(whole, start=whole.start + at, length=whole.length - at, initial=state)
+            if continuum.final:
+                yield replace(
+                    continuum, start=continuum.start + at, length=continuum.length - at, initial=state
+                )
 
     def run(self) -> Equations:
         """Return the finished equations."""
@@ -370,9 +385,9 @@ class _Assembly:
             problem, start = solution.field, solution.origin
             ends = map(self.distributed.evaluator.constant, (problem.start, problem.end))
             length = sum((end - start for end in ends), start * 0)
-            own = (solution.medium.system, start, length, solution.initial, solution.inputs)
+            arguments = (solution.medium.system, start, length, solution.initial, solution.inputs)
             laws = solution.medium.laws(self.distributed.propagation)
-            self.continua.append(Continuum(problem.name, "field", *own, parts=laws))
+            self.continua.append(Continuum(problem.name, "field", *arguments, parts=laws))
             for load, form in solution.filtered:
                 embed = self.distributed.propagation.embed
                 self._filtered(load, LinearForm(tuple((v, embed(c)) for v, c in form.terms)))
@@ -507,9 +522,9 @@ class _Assembly:
             order = list(TopologicalSorter(graph).static_order())
         except CycleError as error:
             circle = error.args[1]
-            place = next((by_name[n].span for n in circle if n in by_name), None)
+            location = next((by_name[n].span for n in circle if n in by_name), None)
             message = f"blocks refer to each other in a circle: {' -> '.join(reversed(circle))}"
-            raise ModelError(Diagnostic("SF215", message, place)) from None
+            raise ModelError(Diagnostic("SF215", message, location)) from None
         return {name: expressions[name] for name in order}
 
     def _stamp(
@@ -569,9 +584,9 @@ class _Assembly:
                     final = tuple((v, 1) for v in state)
                     state, start, length = use.element.tip_state(element_use), length, -length
                 self.states[use.name] = state
-                own = (use.name, kind, medium.system, start, length, state)
+                arguments = (use.name, kind, medium.system, start, length, state)
                 laws = medium.laws(self.distributed.propagation)
-                self.continua.append(Continuum(*own, final=final, parts=laws))
+                self.continua.append(Continuum(*arguments, final=final, parts=laws))
         return use.element.stamp(element_use)
 
     @staticmethod
@@ -599,8 +614,8 @@ class _Assembly:
             if not evaluator.in_s(below).is_one:
                 # A filter with states of its own, even where another with the same poles acts on the node.
                 form = self._filtered(Variable("value", use.name, f"delivered_{number + 1}"), form)
-            own = self.balance[injection.node]
-            self.balance[injection.node] = _side_by_side(own, form * Factored.number(self.ring, -1))
+            balance = self.balance[injection.node]
+            self.balance[injection.node] = _side_by_side(balance, form * Factored.number(self.ring, -1))
         self.unknowns += stamp.unknowns
         self.rows += stamp.rows
         for quantity, form in stamp.through:

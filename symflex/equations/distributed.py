@@ -71,9 +71,9 @@ class Medium:
         laws = propagation.table.dispersions
         return () if self.along is None else tuple((p.states, laws[number]) for p, number in self.parts)
 
-    def way(self, place: Factored) -> Factored:
+    def way(self, position: Factored) -> Factored:
         """Return how far a point of a line element is from where its state is taken for a start."""
-        return place - self.origin if self.is_turned and self.origin is not None else place
+        return position - self.origin if self.is_turned and self.origin is not None else position
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,10 +89,10 @@ class FieldSolution:
     @property
     def initial(self) -> tuple[Variable | None, ...]:
         """The unknowns: the state at the start, None what a finite one leaves out."""
-        own = self.medium
+        medium = self.medium
         return tuple(
-            None if name in own.held else Variable("field", self.field.name, name)
-            for name in own.system.states
+            None if name in medium.held else Variable("field", self.field.name, name)
+            for name in medium.system.states
         )
 
 
@@ -201,8 +201,8 @@ class Distributed:
             return AlongPoint(owner, medium, (), (), length, at, unknown, call.order, call.argument)
         solution = self.solutions[call.name]
         at, name = at - solution.origin, solution.field.name
-        own = solution.medium, solution.initial, solution.inputs
-        return AlongPoint(name, *own, at, at, call.name, call.order, call.argument)
+        arguments = solution.medium, solution.initial, solution.inputs
+        return AlongPoint(name, *arguments, at, at, call.name, call.order, call.argument)
 
     def value(self, call: Call, states: Mapping[str, Sequence[Variable | None]]) -> LinearForm:
         """Return an unknown, quantity or derivative at a call's point, given states at first ends."""
@@ -284,14 +284,14 @@ class _Demands:
             raise ModelError(Diagnostic("SF910", message, span, hint))
         components = varying_components(system)
         singular_parts = [[_singular(part, along, end, name, span) for part in components] for end in ends]
-        singular = [any(own) for own in singular_parts]
+        singular = [any(singular_part) for singular_part in singular_parts]
         if all(singular):
             message = f"stiffnesses vanish at both ends of '{name}'"
             hint = "cut it in two between them, so that each part has one such end"
             raise ModelError(Diagnostic("SF910", message, span, hint))
-        own, origin = singular_parts[singular[1]], along.evaluator.constant(ends[singular[1]])
+        singular_part, origin = singular_parts[singular[1]], along.evaluator.constant(ends[singular[1]])
         parts, held = [], set[str]()
-        for part, start in zip(components, own, strict=True):
+        for part, start in zip(components, singular_part, strict=True):
             law = Dispersion(name, "varying", (), origin * 0, (), part.matrix, (origin,), start, span)
             key = ("varying", text(origin), *(text(x) for row in part.matrix for x in row))
             parts.append((part, self._number(key, law)))
@@ -375,8 +375,8 @@ def survey(
                 if medium.held:
                     _check_tip(model, use, is_second=medium.is_turned)
                 lines.append((use.name, medium, length))
-                own = medium.system.axes
-                read = (*medium.system.states, *(() if own is None else own.readings()))
+                axes = medium.system.axes
+                read = (*medium.system.states, *(() if axes is None else axes.readings()))
                 for state, quantity in zip(read, use.element.along, strict=True):
                     along.update((f"{use.name}.{name}", state) for name in quantity)
         for _, medium, length in () if is_cut else lines:
@@ -585,10 +585,10 @@ def _driven(medium: Medium, length: Factored, propagation: Propagation) -> list[
         if number == POLYNOMIAL:
             integral = _monomial(propagation.embed(length), n)
         else:
-            rest = one - h[n - 1]
+            remainder = one - h[n - 1]
             for k in range(1, n):
-                rest = rest - propagation.embed(part.coefficients[k]) * h[k - 1]
-            integral = rest / propagation.embed(part.coefficients[0])
+                remainder = remainder - propagation.embed(part.coefficients[k]) * h[k - 1]
+            integral = remainder / propagation.embed(part.coefficients[0])
         integrals = (integral, *h[: n - 1])
         for load, column in zip(medium.system.loads, columns, strict=True):
             b = [propagation.embed(load[i]) for i in part.states]

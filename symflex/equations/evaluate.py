@@ -77,11 +77,13 @@ class ExactEvaluator(ExpressionReader):
     @cached_property
     def s(self) -> Factored:
         """The Laplace variable."""
-        own = Factored.generator(self.ring, LAPLACE)
+        generator = Factored.generator(self.ring, LAPLACE)
         if self.root is None:
-            return own
+            return generator
         plain = replace(self, root=None, is_constant=True)
-        return (own**self.root.order - plain.constant(self.root.shift)) / plain.constant(self.root.slope)
+        return (generator**self.root.order - plain.constant(self.root.shift)) / plain.constant(
+            self.root.slope
+        )
 
     @cached_property
     def opener(self) -> Opener:
@@ -178,8 +180,8 @@ class ExactEvaluator(ExpressionReader):
             return Dynamics(self.through[meaning.variable], self.one)
         if meaning.variable is not None:
             return Dynamics(LinearForm.of((meaning.variable, self.one)), self.one)
-        own = self.s if meaning.name == LAPLACE else Factored.generator(self.ring, meaning.name)
-        return Dynamics(own, self.one)
+        value = self.s if meaning.name == LAPLACE else Factored.generator(self.ring, meaning.name)
+        return Dynamics(value, self.one)
 
     def _block(self, expression: Name | Attribute, name: str) -> Dynamics[Factored]:
         if name not in self.blocks:

@@ -136,9 +136,12 @@ def line_network(equations: Equations) -> LineNetwork:
     more = count_from(len(unknowns))
     parts = [part for c, _ in turned for part in _parts(c, columns, more, entries)]
     touched = [[columns[v] for v, _ in row.terms] for row in rows] + [[*p.start, *p.end] for p in parts]
-    touched = [[c for c in own if 0 <= c < size] for own in touched]
-    place = [*_band_order(size, touched), *range(size, size + len(equations.inputs)), -1]
-    spans = [(min(reached), max(reached)) for reached in ([place[c] for c in own] for own in touched)]
+    touched = [[c for c in columns_of if 0 <= c < size] for columns_of in touched]
+    position = [*_band_order(size, touched), *range(size, size + len(equations.inputs)), -1]
+    spans = [
+        (min(reached), max(reached))
+        for reached in ([position[c] for c in columns_of] for columns_of in touched)
+    ]
     numbers: dict[int, int] = {}
     count = height = width = end = 0
     for i in sorted(range(len(spans)), key=lambda i: spans[i]):
@@ -146,13 +149,13 @@ def line_network(equations: Equations) -> LineNetwork:
         count += 1 if i < len(rows) else len(parts[i - len(rows)].signs)
         end = max(end, spans[i][1] + 1)
         height, width = max(height, count - spans[i][0]), max(width, end - spans[i][0])
-    at = {v: place[c] for v, c in columns.items()}
+    at = {v: position[c] for v, c in columns.items()}
     lumped = [x for i, row in enumerate(rows) for x in _lumped(numbers[i], row, at, entries)]
     for i, output in enumerate(equations.outputs):
         lumped += _lumped(size + i, output.form * output.divisor**-1, at, entries)
     groups: dict[tuple[tuple[tuple[int, int], ...], tuple[int, ...]], list[Element]] = {}
     for i, p in enumerate(parts):
-        start, end_ = (tuple(place[c] for c in state) for state in (p.start, p.end))
+        start, end_ = (tuple(position[c] for c in state) for state in (p.start, p.end))
         element = (numbers[len(rows) + i], p.coefficients, p.length, start, end_)
         groups.setdefault((p.pattern, p.signs), []).append(element)
     kinds = tuple((*key, tuple(found)) for key, found in groups.items())
@@ -165,12 +168,12 @@ def _turned(number: int, continuum: Continuum) -> tuple[Continuum, list[tuple[Va
     if axes is None or len(coupled_states(len(matrix), _places(matrix))) > 1:
         return continuum, []
     one = axes.cos**0
-    own, readings = axes.own, axes.readings()
+    system, readings = axes.own, axes.readings()
     forms: list[tuple[Variable, LinearForm]] = []
     states: list[list[tuple[Variable | None, int]]] = []
     for end, known in enumerate(([(v, 1) for v in continuum.initial], continuum.final)):
         state = list(known)
-        for i, name in enumerate(own.states):
+        for i, name in enumerate(system.states):
             if name in readings:
                 variable = Variable("field", continuum.name, f"{name}({number}, {end})")
                 terms = [(v, c * sign) for (v, sign), c in zip(known, readings[name], strict=True)]
@@ -178,7 +181,7 @@ def _turned(number: int, continuum: Continuum) -> tuple[Continuum, list[tuple[Va
                 state[i] = variable, 1
         states.append(state)
     initial = tuple(v for v, _ in states[0])
-    return replace(continuum, system=own, initial=initial, final=tuple(states[1])), forms
+    return replace(continuum, system=system, initial=initial, final=tuple(states[1])), forms
 
 
 def _places(matrix: Matrix) -> list[tuple[int, int]]:
@@ -198,11 +201,11 @@ def _parts(
     final += [(next(more), 1) for _ in loads]
     for states in coupled_states(n + len(loads), values):
         position = {state: i for i, state in enumerate(states)}
-        own = {(position[i], position[j]): x for (i, j), x in values.items() if i in position}
+        within = {(position[i], position[j]): x for (i, j), x in values.items() if i in position}
         yield _Part(
-            tuple(own),
+            tuple(within),
             tuple(final[i][1] for i in states),
-            tuple(entries.number(x) for x in own.values()),
+            tuple(entries.number(x) for x in within.values()),
             entries.number(continuum.length),
             tuple(initial[i] for i in states),
             tuple(final[i][0] for i in states),
@@ -227,7 +230,7 @@ def _band_order(count: int, rows: Sequence[Sequence[int]]) -> list[int]:
     for i, row in enumerate(rows):
         for c in row:
             of_column[c].append(i)
-    degree = [len({c for i in own for c in rows[i]}) for own in of_column]
+    degree = [len({c for i in row_numbers for c in rows[i]}) for row_numbers in of_column]
     found: list[int] = []
     seen: set[int] = set()
     for start in sorted(range(count), key=lambda c: degree[c]):
@@ -240,10 +243,10 @@ def _band_order(count: int, rows: Sequence[Sequence[int]]) -> list[int]:
         order = _walk(far, rows, of_column, degree)
         seen.update(order)
         found += reversed(order)
-    place = [0] * count
+    position = [0] * count
     for i, c in enumerate(found):
-        place[c] = i
-    return place
+        position[c] = i
+    return position
 
 
 def _walk(

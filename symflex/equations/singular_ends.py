@@ -50,17 +50,17 @@ def vanishing_order(value: Factored, h: fmpz_mpoly) -> tuple[int, Factored]:
     >>> order, str(value)
     (-1, '(l - x)^-1*(l + x)^-1')
     """
-    order, rest = 0, Factored.number(value.ring, value.unit)
+    order, remainder_factor = 0, Factored.number(value.ring, value.unit)
     for factor, exponent in value.factors:
-        left, times = factor, 0
-        while len(left) >= len(h) or left == h:
-            quotient, remainder = divmod(left, h)
+        cofactor, times = factor, 0
+        while len(cofactor) >= len(h) or cofactor == h:
+            quotient, remainder = divmod(cofactor, h)
             if not remainder.is_zero():
                 break
-            left, times = quotient, times + 1
+            cofactor, times = quotient, times + 1
         order += times * exponent
-        rest = rest * Factored.polynomial(value.ring, left) ** exponent
-    return order, Factored.polynomial(value.ring, h) ** order * rest
+        remainder_factor = remainder_factor * Factored.polynomial(value.ring, cofactor) ** exponent
+    return order, Factored.polynomial(value.ring, h) ** order * remainder_factor
 
 
 def singular_start(
@@ -70,7 +70,7 @@ def singular_start(
     size, i = range(len(matrix)), way.ring.index[variable]
     (h,) = (f for f, _ in way.factors if degree_in(f, i))
     places = {(i, j): vanishing_order(x, h) for i, row in enumerate(matrix) for j, x in enumerate(row)}
-    orders = {place: order for place, (order, x) in places.items() if not x.is_zero}
+    orders = {index: order for index, (order, x) in places.items() if not x.is_zero}
     if all(order >= 0 for order in orders.values()):
         return None
     powers = _powers(orders, len(matrix))

@@ -146,11 +146,13 @@ def draw_response(response: SampledResponse, ax: AxesGiven | None = None) -> Fig
         return None
     level = response.magnitude_db[kept][order]
     level = np.where(np.isfinite(level), level, np.nan)
-    own = axes_of(ax)
-    with nullcontext() if own else paper_style():
+    given_axes = axes_of(ax)
+    with nullcontext() if given_axes else paper_style():
         height = HEIGHT_INCHES + LINE_INCHES
         top, bottom = (
-            Canvas(axes=own).own_axes(2) if own else magnitude_over_phase(COLUMN_INCHES, height, RATIO)
+            Canvas(axes=given_axes).own_axes(2)
+            if given_axes
+            else magnitude_over_phase(COLUMN_INCHES, height, RATIO)
         )
         figure = root_figure(top)
         colour = COLOURS[len(top.get_lines()) % len(COLOURS)]
@@ -159,7 +161,7 @@ def draw_response(response: SampledResponse, ax: AxesGiven | None = None) -> Fig
         label_magnitudes(top, response.unit)
         _set_phase_axis(bottom, [response])
         set_frequency_axes((top, bottom), float(frequency[0]), float(frequency[-1]))
-        if not own:
+        if not given_axes:
             write_title(figure, title_lines(response.tf, COLUMN_INCHES))
     return figure
 

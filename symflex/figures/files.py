@@ -98,9 +98,9 @@ def _animation(figure: Figure) -> bytes:
         still = canvas.copy_from_bbox(figure.bbox)  # type: ignore[no-untyped-call]
         for i in range(FRAMES):
             canvas.restore_region(still)  # type: ignore[no-untyped-call]
-            for artist, place in moving:
-                if place is not None:
-                    place(exp(2j * pi * i / FRAMES))
+            for artist, move in moving:
+                if move is not None:
+                    move(exp(2j * pi * i / FRAMES))
                     artist.set_visible(True)
                     figure.draw_artist(artist)
             dots = np.asarray(canvas.buffer_rgba())  # type: ignore[no-untyped-call]
@@ -109,10 +109,10 @@ def _animation(figure: Figure) -> bytes:
         pictures[0].save(buffer, "GIF", save_all=True, append_images=pictures[1:], duration=FRAME_MS, loop=0)
     finally:
         figure.dpi = dpi
-        for artist, place in moving:
+        for artist, move in moving:
             artist.set_visible(True)
-            if place is not None:
-                place(1)
+            if move is not None:
+                move(1)
     return buffer.getvalue()
 
 

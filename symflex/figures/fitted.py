@@ -50,9 +50,13 @@ def draw_measured(
     measured: MeasuredResponse, model: Complex | None = None, unit: str = "", ax: AxesGiven | None = None
 ) -> Figure:
     """Draw a measured response, and over it a model on its lines if there is one, or on the user's axes."""
-    own = axes_of(ax)
-    with nullcontext() if own else paper_style():
-        top, bottom = Canvas(axes=own).own_axes(2) if own else magnitude_over_phase(COLUMN_INCHES, 3.9, 1.35)
+    given_axes = axes_of(ax)
+    with nullcontext() if given_axes else paper_style():
+        top, bottom = (
+            Canvas(axes=given_axes).own_axes(2)
+            if given_axes
+            else magnitude_over_phase(COLUMN_INCHES, 3.9, 1.35)
+        )
         if model is None:
             _draw_data(top, bottom, measured, measured.values, np.degrees(np.angle(measured.values)))
             if measured.is_magnitude:
@@ -62,7 +66,7 @@ def draw_measured(
             _draw_data(top, bottom, measured, model, phase)
             top.plot(measured.frequency_hz, _decibels(model), color=COLOURS[0], label="model")
             bottom.plot(measured.frequency_hz, phase, color=COLOURS[0])
-        return _finish(top, bottom, measured, unit, 2, is_new=not own)
+        return _finish(top, bottom, measured, unit, 2, is_new=not given_axes)
 
 
 def draw_fit(fit: ResonanceFit, response: int | None = None, ax: AxesGiven | None = None) -> Figure:
@@ -70,9 +74,9 @@ def draw_fit(fit: ResonanceFit, response: int | None = None, ax: AxesGiven | Non
 
     Lines left out are crossed, and the ground is coloured where the phase is not a minimum one.
     """
-    own = axes_of(ax)
-    if own:
-        top, bottom = Canvas(axes=own).own_axes(2)
+    given_axes = axes_of(ax)
+    if given_axes:
+        top, bottom = Canvas(axes=given_axes).own_axes(2)
         _draw_response(fit, response or 0, top, bottom, is_small=False)
         measured = fit.measured[response or 0]
         return _finish(top, bottom, measured, fit.bases[response or 0].unit, FIT_COLUMNS, is_new=False)
@@ -97,10 +101,10 @@ def _page(fit: ResonanceFit, shown: Sequence[int]) -> Figure:
         panels = cell.subplots(len(ratios), 1, sharex=True, height_ratios=ratios)
         for axes in panels:
             axes.grid(visible=True)
-        top, bottom, left, *rest = panels
+        top, bottom, residual, *others = panels
         _draw_response(fit, r, top, bottom, is_small=is_small)
-        _draw_residual(fit, r, left)
-        for axes in rest:
+        _draw_residual(fit, r, residual)
+        for axes in others:
             if measured.coherence is not None:
                 axes.plot(measured.frequency_hz, measured.coherence, color=DATA_COLOUR, linewidth=0.7)
             axes.set_ylim(0, 1.1)
@@ -160,10 +164,10 @@ def _draw_response(fit: ResonanceFit, response: int, top: Axes, bottom: Axes, *,
         phase = phase + 360 * np.round((fitted[0] - phase[0]) / 360)
         bottom.plot(frequency, phase, color=COLOURS[1], linestyle=DASHES[1])
         top.plot([], [], color=COLOURS[1], linestyle=DASHES[1], label="phase from magnitude")
-    left = fit.left_out(response)
-    if left.size:
-        level = _decibels(measured.values[left])
-        top.plot(frequency[left], level, "x", color=COLOURS[1], markersize=4.5, label="left out")
+    excluded = fit.left_out(response)
+    if excluded.size:
+        level = _decibels(measured.values[excluded])
+        top.plot(frequency[excluded], level, "x", color=COLOURS[1], markersize=4.5, label="left out")
     levels = _decibels(measured.values)
     rise = max(0.05 * float(np.ptp(levels)), 1.0)
     limits = float(levels.min()) - rise, float(levels.max()) + rise
@@ -173,8 +177,8 @@ def _draw_response(fit: ResonanceFit, response: int, top: Axes, bottom: Axes, *,
             axes.axvline(hertz, color=QUIET, linewidth=0.4, zorder=0)
         name = f"{k}" if is_small else f"{k}: {hertz:.4g} Hz"
         turn = 0 if is_small else 90
-        place, within = (hertz, 0.02), ("data", "axes fraction")
-        top.annotate(name, place, xycoords=within, fontsize=NAME_POINTS, rotation=turn, ha="right")
+        anchor, within = (hertz, 0.02), ("data", "axes fraction")
+        top.annotate(name, anchor, xycoords=within, fontsize=NAME_POINTS, rotation=turn, ha="right")
     top.set_ylim(limits)
 
 
@@ -183,15 +187,15 @@ def _draw_residual(fit: ResonanceFit, response: int, axes: Axes) -> None:
     line = fit.problem.lines[response]
     every = line.every.measured
     with np.errstate(divide="ignore"):
-        left = _decibels(line.every.rest(fit.values(response)))
+        residual = _decibels(line.every.rest(fit.values(response)))
     wild = fit.left_out(response)
-    kept = np.delete(np.arange(left.size), wild)
-    axes.plot(every.frequency_hz[kept], left[kept], ".", color=DATA_COLOUR, markersize=1.6)
-    axes.plot(every.frequency_hz[wild], left[wild], "x", color=COLOURS[1], markersize=4.5)
+    kept = np.delete(np.arange(residual.size), wild)
+    axes.plot(every.frequency_hz[kept], residual[kept], ".", color=DATA_COLOUR, markersize=1.6)
+    axes.plot(every.frequency_hz[wild], residual[wild], "x", color=COLOURS[1], markersize=4.5)
     if line.deviation is not None:
         noise = _decibels(np.sqrt(2) * line.deviation * line.measured.values)
         axes.plot(line.measured.frequency_hz, noise, color=COLOURS[2], linewidth=0.8, label="expected noise")
-    finite = left[np.isfinite(left)]
+    finite = residual[np.isfinite(residual)]
     if finite.size:
         lowest = max(float(np.min(finite)), float(np.median(finite)) - 40.0)  # what is smaller is chance
         axes.set_ylim(lowest, float(np.max(finite)) + 6)

@@ -142,8 +142,8 @@ def draw_residual(shaper: InputShaper) -> Figure:
         axes = Canvas().one_panel(RESIDUAL_INCHES)
         for pole, colour, dash in zip(shaper.poles, COLOURS, DASHES, strict=False):
             middle = acb(pole.re.mid(), pole.im.mid())
-            left = [100 * float(shaper.residual(middle * r).mid()) for r in ratios.tolist()]
-            axes.plot(ratios, left, color=colour, linestyle=dash, label=f"{pole.frequency_hz():.4g} Hz")
+            residuals = [100 * float(shaper.residual(middle * r).mid()) for r in ratios.tolist()]
+            axes.plot(ratios, residuals, color=colour, linestyle=dash, label=f"{pole.frequency_hz():.4g} Hz")
         axes.grid(visible=True)
         axes.axhline(TICK, color=COLOURS[-1], linewidth=0.5)
         axes.set_xlim(*SPAN)

@@ -146,8 +146,8 @@ def draw_locus(loop: AnyLoop, canvas: Canvas) -> Figure:
             entry = said_of if said_of and not i else None
             axes.plot(s.real, s.imag, line, color=COLOURS[0], linewidth=1.0, zorder=2, label=entry)
             point_along(axes, s, COLOURS[0], POINTED * (view.im[1] - view.im[0]))
-    for place in crossings:
-        axes.plot([0, 0], [place.imag, -place.imag], "o", color="black", markersize=2.6, zorder=4)
+    for crossing in crossings:
+        axes.plot([0, 0], [crossing.imag, -crossing.imag], "o", color="black", markersize=2.6, zorder=4)
     _draw_holes(axes, locus)
     label_s_plane(axes)
     letters = sum(len(str(label).replace("$", "")) for label in axes.get_legend_handles_labels()[1])

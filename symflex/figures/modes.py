@@ -101,8 +101,8 @@ def draw_shapes(
     labels = ["" if isinstance(panel, Plan) else names[_unit_of(panel)] for panel in panels]
     gaps = [LEFT, *(GAP if a == b else LABELLED_GAP for a, b in pairwise(labels))]
     columns = _widths(panels, width - RIGHT - sum(gaps))
-    own = canvas.own_axes(len(panels) * len(shapes)) if canvas.axes else ()
-    if min(columns) < NARROWEST_PANEL and not own:
+    given_axes = canvas.own_axes(len(panels) * len(shapes)) if canvas.axes else ()
+    if min(columns) < NARROWEST_PANEL and not given_axes:
         message = f"{len(panels)} panels side by side do not fit into {MM_PER_INCH * width:.4g} mm"
         raise refused(message, "the width of a page is 170 mm")
     is_lagging = any(_lags(panel, shape) for shape in shapes for panel in panels)
@@ -113,29 +113,29 @@ def draw_shapes(
     above = LINE_INCHES * len(lines) + (LEGEND_INCHES if is_lagging else 0) + 0.02
     row = PLAN_INCHES if any(isinstance(panel, Plan) for panel in panels) else ROW_INCHES
     height = above + len(shapes) * (HEADING_INCHES + row) + below
-    figure = root_figure(own[0]) if own else new_figure(width, height)
+    figure = root_figure(given_axes[0]) if given_axes else new_figure(width, height)
     runs = sum(isinstance(panel, Run) for panel in panels)
     moving: list[Moving] = []
     for i, shape in enumerate(shapes):
         bottom = height - above - (i + 1) * (HEADING_INCHES + row)
-        left = 0.0
+        edge = 0.0
         for j, (panel, room, gap) in enumerate(zip(panels, columns, gaps, strict=True)):
-            left += gap
-            box = (left / width, bottom / height, room / width, row / height)
-            axes = own[i * len(panels) + j] if own else figure.add_axes(box)
+            edge += gap
+            box = (edge / width, bottom / height, room / width, row / height)
+            axes = given_axes[i * len(panels) + j] if given_axes else figure.add_axes(box)
             if isinstance(panel, Plan):
                 parts = _draw_plan(axes, panel, shape)
             else:
                 parts = _draw_panel(axes, panel, shape)
                 _set_x_axis(axes, panel, room, is_last=i == len(shapes) - 1, is_named=runs > 1)
             still = isinstance(shape, EnclosedModeShape) and shape.pole.is_real
-            moving += [(artist, _stays if still and place else place) for artist, place in parts]
+            moving += [(artist, _stays if still and move else move) for artist, move in parts]
             if j == 0:
                 axes.set_title(headings[i], loc="left", pad=2.5, fontsize=7.5)
-            if own:
+            if given_axes:
                 axes.set_ylabel(labels[j])
-            left += room
-    if own:
+            edge += room
+    if given_axes:
         return figure
     _label_columns(figure, labels, columns, gaps, (below + (height - above - below) / 2) / height)
     if is_lagging:
@@ -241,29 +241,29 @@ def _stays(_: complex) -> None:
     """Leave what does not oscillate where it is."""
 
 
-def _moving_line(axes: Axes, rest: Points, moved: Amplitudes, **style: Any) -> Moving:  # noqa: ANN401
+def _moving_line(axes: Axes, at_rest: Points, moved: Amplitudes, **style: Any) -> Moving:  # noqa: ANN401
     """Draw points where they are at the crest of the motion; a row for x and one for y."""
-    (line,) = axes.plot(*(rest + moved.real), **style)
-    return line, lambda turn: line.set_data(*(rest + (turn * moved).real))
+    (line,) = axes.plot(*(at_rest + moved.real), **style)
+    return line, lambda turn: line.set_data(*(at_rest + (turn * moved).real))
 
 
 def _draw_plan(axes: Axes, panel: Plan, shape: EnclosedShape) -> list[Moving]:
     moving: list[Moving] = []
     members = list(_members(panel, shape))
-    size = float(max(np.ptp(np.concatenate([place for place, _ in members], axis=1), axis=1)))
+    size = float(max(np.ptp(np.concatenate([points for points, _ in members], axis=1), axis=1)))
     largest = float(max(np.abs(moved).max() for _, moved in members)) or 1.0
     scale = SWING * size / largest
     is_lagging = _lags(panel, shape)
-    for place, moved in members:
-        axes.plot(*place, color=QUIET, linewidth=0.5, zorder=1)
+    for points, moved in members:
+        axes.plot(*points, color=QUIET, linewidth=0.5, zorder=1)
         if is_lagging:
-            swung = place + scale * moved.imag
+            swung = points + scale * moved.imag
             (lagging,) = axes.plot(*swung, color=COLOURS[1], linestyle=LAGGING, linewidth=0.9, zorder=2)
             moving.append((lagging, None))
         style = {"color": COLOURS[0], "zorder": 3, "solid_capstyle": "round"}
-        moving.append(_moving_line(axes, place, scale * moved, **style))
+        moving.append(_moving_line(axes, points, scale * moved, **style))
         swing = scale * np.abs(moved)
-        axes.update_datalim(np.concatenate([place - swing, place + swing], axis=1).T)
+        axes.update_datalim(np.concatenate([points - swing, points + swing], axis=1).T)
     for node, x, y in panel.loaded:
         swings = [[complex(shape.motion(f"{node}.{c}").value.mid())] for c in ("x", "y")]
         moving.append(_draw_inertia(axes, x, y, np.array(swings) * complex(scale)))
@@ -323,13 +323,13 @@ def _draw_run(axes: Axes, panel: Run, shape: EnclosedShape, *, is_lagging: bool)
                 x, values.imag, color=COLOURS[1], linestyle=LAGGING, linewidth=0.9, zorder=2
             )
             moving.append((lagging, None))
-        rest, moved = np.array([x, 0 * x]), np.array([0 * values, values])
+        at_rest, moved = np.array([x, 0 * x]), np.array([0 * values, values])
         style = {"color": COLOURS[0], "zorder": 3, "solid_capstyle": "round"}
-        moving.append(_moving_line(axes, rest, moved, **style))
-    for node, place in panel.loaded:
+        moving.append(_moving_line(axes, at_rest, moved, **style))
+    for node, position in panel.loaded:
         name = node if any(m.name == node for m in shape.motions) else f"{node}.y"
         amplitude = complex(shape.motion(name).value.mid())
-        moving.append(_draw_inertia(axes, place, 0.0, np.array([[0j], [amplitude]])))
+        moving.append(_draw_inertia(axes, position, 0.0, np.array([[0j], [amplitude]])))
     span = panel.ends[-1] - panel.ends[0]
     axes.set_xlim(panel.ends[0] - 0.02 * span, panel.ends[-1] + 0.02 * span)
     return moving
@@ -343,17 +343,17 @@ def _draw_inertia(axes: Axes, x: float, y: float, moved: Amplitudes) -> Moving:
 def _draw_stems(axes: Axes, values: npt.NDArray[np.complex128], *, is_lagging: bool) -> list[Moving]:
     moving: list[Moving] = []
     places = np.arange(1, len(values) + 1)
-    rest, moved = np.array([places, 0 * places]), np.array([0 * values, values])
+    at_rest, moved = np.array([places, 0 * places]), np.array([0 * values, values])
     is_crowded = len(values) > NAMES_LIMIT
     if len(values) > 1:
         style = {"color": COLOURS[0], "linewidth": 0.5, "alpha": 0.6, "zorder": 2}
-        moving.append(_moving_line(axes, rest, moved, **style))
+        moving.append(_moving_line(axes, at_rest, moved, **style))
     width = 0.5 if is_crowded else 1.1
     stems = axes.vlines(places, 0, values.real, color=COLOURS[0], linewidth=width, zorder=3)
-    ends = [[(place, 0.0), (place, value)] for place, value in zip(places, values, strict=True)]
+    ends = [[(position, 0.0), (position, value)] for position, value in zip(places, values, strict=True)]
     moving.append((stems, lambda turn: stems.set_segments(list((np.array(ends) * (1, turn)).real))))
     style = {"marker": "o", "linestyle": "none", "markersize": 1.8 if is_crowded else 3.6, "zorder": 4}
-    moving.append(_moving_line(axes, rest, moved, color=COLOURS[0], **style))
+    moving.append(_moving_line(axes, at_rest, moved, color=COLOURS[0], **style))
     if is_lagging:
         size = 1.4 if is_crowded else 2.8
         (marks,) = axes.plot(places, values.imag, "D", color=COLOURS[1], markersize=size, zorder=5)
@@ -401,13 +401,13 @@ def _label_columns(
 ) -> None:
     """Say beside the panels what they show."""
     width = figure.get_figwidth()
-    left, before = 0.0, ""
+    edge, before = 0.0, ""
     for label, room, gap in zip(labels, columns, gaps, strict=True):
-        left += gap
+        edge += gap
         if label not in (before, ""):
-            place, text = (left - LABEL_OFFSET) / width, label[0].upper() + label[1:]
-            figure.text(place, middle, text, rotation=90, ha="center", va="center", fontsize=8)
-        left, before = left + room, label
+            position, text = (edge - LABEL_OFFSET) / width, label[0].upper() + label[1:]
+            figure.text(position, middle, text, rotation=90, ha="center", va="center", fontsize=8)
+        edge, before = edge + room, label
 
 
 def _add_legend(figure: Figure, panels: Sequence[Panel], top: float) -> None:

@@ -80,13 +80,15 @@ def draw_poles_zeros(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figu
     width = canvas.width or (COLUMN_INCHES if count < PANELS_IN_COLUMN else PAGE_INCHES)
     columns = min(count, PANELS_IN_COLUMN if width < (COLUMN_INCHES + PAGE_INCHES) / 2 else PANELS_ON_PAGE)
     rows = ceil(count / columns)
-    own = canvas.own_axes(count) if canvas.axes else ()
+    given_axes = canvas.own_axes(count) if canvas.axes else ()
     room = (width - LEFT - RIGHT - GAP * (columns - 1)) / columns
     narrowest = min(NARROWEST, room / 1.3)
     view = _view(
         [mark for marks in panels for mark in marks],
         _highest_pole(maps) if band_hz is None else band_hz[1],
-        (inches_of(own[0])[0] / inches_of(own[0])[1],) * 2 if own else (narrowest, WIDEST),
+        (inches_of(given_axes[0])[0] / inches_of(given_axes[0])[1],) * 2
+        if given_axes
+        else (narrowest, WIDEST),
         [cloud for each in clouds for cloud in each],
     )
     is_asked = frame != FREE
@@ -104,7 +106,7 @@ def draw_poles_zeros(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figu
     lines = [line for group in titles for line in group]
     above = LINE_INCHES * len(lines) + (0.04 if lines else 0)
     height = above + rows * (TOP + panel_height + BOTTOM)
-    figure = root_figure(own[0]) if own else new_figure(width, height)
+    figure = root_figure(given_axes[0]) if given_axes else new_figure(width, height)
     # Panels narrower than their room stand in the middle.
     start = LEFT + (width - LEFT - RIGHT - columns * panel_width - (columns - 1) * GAP) / 2
     for i, (bound, marks) in enumerate(zip(bounds, panels, strict=True)):
@@ -112,8 +114,8 @@ def draw_poles_zeros(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figu
         x = start + column * (panel_width + GAP)
         y = height - above - (row + 1) * (TOP + panel_height) - row * BOTTOM
         box = (x / width, y / height, panel_width / width, panel_height / height)
-        axes = own[i] if own else figure.add_axes(box)
-        if own:
+        axes = given_axes[i] if given_axes else figure.add_axes(box)
+        if given_axes:
             panel_width, panel_height = inches_of(axes)
         _draw_panel(axes, (marks, clouds[i]), view, panel_width, panel_height)
         if is_asked:
@@ -123,12 +125,12 @@ def draw_poles_zeros(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figu
         write_notes(axes, () if is_asked else marks, panel, COLOUR_OF, marks, inset)
         axes.set_title(label_of_tf(bound.source), pad=4)
         axes.set_xlabel(r"$\mathrm{Re}(s)$ [rad/s]", labelpad=2)
-        if column == 0 or own:
+        if column == 0 or given_axes:
             axes.set_ylabel(r"$\mathrm{Im}(s)$ [rad/s]", labelpad=1)
         else:
             axes.tick_params(labelleft=False)
-    if own:
-        own[0].set_title("\n".join([*lines, label_of_tf(bounds[0].source)]), pad=4)
+    if given_axes:
+        given_axes[0].set_title("\n".join([*lines, label_of_tf(bounds[0].source)]), pad=4)
     else:
         write_titles(figure, titles, 0.04, height)
     return figure

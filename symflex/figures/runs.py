@@ -77,9 +77,9 @@ def panels_of(model: Model, shapes: Sequence[EnclosedShape]) -> tuple[Panel, ...
         if names:
             stems.append(Stems(tuple(names), unit))
     if not runs and not stems:
-        rest = [m for m in shapes[0].motions if m.variable.kind in ("node", "signal")]
-        units = dict.fromkeys(m.unit for m in rest)
-        stems = [Stems(tuple(m.name for m in rest if m.unit == unit), unit) for unit in units]
+        lumped = [m for m in shapes[0].motions if m.variable.kind in ("node", "signal")]
+        units = dict.fromkeys(m.unit for m in lumped)
+        stems = [Stems(tuple(m.name for m in lumped if m.unit == unit), unit) for unit in units]
     return (*runs, *stems)
 
 
@@ -129,8 +129,8 @@ def _plan(model: Model, parts: dict[str, DistributedShape]) -> Iterator[Plan]:
     ends = places_of_members({n: (joint(a), joint(b), reach(parts[n])) for n, (a, b) in nodes.items()})
     if lines:
         carrying = _carrying(model)
-        at = {node: place for n, both in nodes.items() for node, place in zip(both, ends[n], strict=True)}
-        loaded = tuple((node, *place) for node, place in at.items() if node in carrying)
+        at = {node: point for n, both in nodes.items() for node, point in zip(both, ends[n], strict=True)}
+        loaded = tuple((node, *point) for node, point in at.items() if node in carrying)
         yield Plan(tuple((name, *start) for name, (start, _) in ends.items()), loaded)
 
 
@@ -152,9 +152,9 @@ def places_of_members(members: Mapping[str, tuple[str, str, Vector]]) -> dict[st
         start = places.get(a) or ((places[b][0] - dx, places[b][1] - dy) if b in places else (right, 0.0))
         end = places.get(b) or (start[0] + dx, start[1] + dy)
         ends[name] = (start, end)
-        for node, place in ((a, start), (b, end)):
+        for node, point in ((a, start), (b, end)):
             if node:
-                places.setdefault(node, place)
+                places.setdefault(node, point)
     return ends
 
 

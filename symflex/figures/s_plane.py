@@ -230,11 +230,11 @@ class Panel:
         x, y = (s.real - self.view.re[0]) / self.view.width, (s.imag - self.view.im[0]) / self.view.height
         return x * wide, y * high
 
-    def s_at(self, place: complex) -> complex:
+    def s_at(self, point: complex) -> complex:
         """Return which s stands at a place, x + j y [points]."""
         wide, high = self.size
-        re = self.view.re[0] + self.view.width * place.real / wide
-        return complex(re, self.view.im[0] + self.view.height * place.imag / high)
+        re = self.view.re[0] + self.view.width * point.real / wide
+        return complex(re, self.view.im[0] + self.view.height * point.imag / high)
 
     def clearest(
         self, boxes: Sequence[Box], texts: Sequence[Box] = (), arrows: Sequence[Box] = (), price: float = 0.0
@@ -252,10 +252,10 @@ class Panel:
         roots = sum(_overlap(near, (x, y, x, y)) for x, y in map(self.at, self.roots))
         return roots + sum(_overlap(box, other) for other in arrows) + TEXT_COST * covered
 
-    def held(self, left: float, bottom: float, wide: float, high: float) -> Box:
+    def held(self, x_wanted: float, bottom: float, wide: float, high: float) -> Box:
         """Return a rectangle of a size, moved into the panel."""
         across, upwards = self.size
-        x = max(PAD_POINTS, min(left, across - wide - PAD_POINTS))
+        x = max(PAD_POINTS, min(x_wanted, across - wide - PAD_POINTS))
         y = max(PAD_POINTS, min(bottom, upwards - high - PAD_POINTS))
         return x, y, x + wide, y + high
 
@@ -362,8 +362,8 @@ class _Notes:
     def _write(self, text: str, box: Box, size: float, colour: str) -> None:
         """Write a line below the top of a rectangle; in the right half, from its right side leftwards."""
         is_right = box[0] + box[2] > inches_of(self.axes)[0] * POINTS_PER_INCH
-        place, side = (box[2 if is_right else 0], box[3]), "right" if is_right else "left"
-        written = self.axes.annotate(text, place, xycoords="axes points", ha=side, va="top", fontsize=size)
+        anchor, side = (box[2 if is_right else 0], box[3]), "right" if is_right else "left"
+        written = self.axes.annotate(text, anchor, xycoords="axes points", ha=side, va="top", fontsize=size)
         written.set_color(colour)
         written.set_in_layout(False)
 

@@ -88,10 +88,10 @@ def draw_sweep(
     """
     panels = _panels(sweep, modes)
     if ax is not None:
-        own = Canvas(axes=axes_of(ax)).own_axes(len(panels))
-        for axes, panel in zip(own, panels, strict=True):
+        panel_axes = Canvas(axes=axes_of(ax)).own_axes(len(panels))
+        for axes, panel in zip(panel_axes, panels, strict=True):
             panel(axes)
-        return root_figure(own[0])
+        return root_figure(panel_axes[0])
     with paper_style(font):
         width = width_mm / MM_PER_INCH if width_mm else COLUMN_INCHES
         lines = title_lines(sweep.attribute("title") if title is None else title, width)
@@ -220,12 +220,12 @@ def _frequency_bands(sweep: Sweep, modes: int | None, axes: Axes) -> None:
     values = sweep["frequency_hz"].reshape(-1, sweep["frequency_hz"].shape[-1])[:, :modes]
     labels: list[str] = []
     for k in range(values.shape[1]):
-        own = values[np.isfinite(values[:, k]), k]
-        if not own.size or not np.median(own):
+        finite = values[np.isfinite(values[:, k]), k]
+        if not finite.size or not np.median(finite):
             continue
-        median = float(np.median(own))
-        low, high = np.percentile(own, BAND)
-        spread = [100 * (x / median - 1) for x in (own.min(), low, high, own.max())]
+        median = float(np.median(finite))
+        low, high = np.percentile(finite, BAND)
+        spread = [100 * (x / median - 1) for x in (finite.min(), low, high, finite.max())]
         at = len(labels)
         axes.plot([at, at], [spread[0], spread[3]], "-", color=QUIET, linewidth=0.8, zorder=2)
         axes.plot([at, at], [spread[1], spread[2]], "-", color=COLOURS[0], linewidth=4, zorder=3)

@@ -73,17 +73,17 @@ def boundary(model: Model, over: Sequence[str]) -> Conditions:
     pair = seen_pair(model)
     tf = derive_all(observed(model, pair[0]), [pair])[0].whole
     ring = tf.ratio.ring
-    whole = prod((Factored.polynomial(ring, h.polynomial) for h in tf.hidden), start=tf.den)
+    denominator = prod((Factored.polynomial(ring, h.polynomial) for h in tf.hidden), start=tf.den)
     shaped = [n for n in over for v in tf.kernels.values if v.depends_on(n)]
     gain, other = sorted(over, key=shaped.count)  # a delay comes last
     rates = {k.generator: rate for k in tf.kernels.kernels if (rate := _rate(ring, k, other))}
     delays = list(rates)
-    moving = [f for f, e in whole.factors if e > 0 and ring.used_in((f,)) & {gain, other, *delays}]
+    moving = [f for f, e in denominator.factors if e > 0 and ring.used_in((f,)) & {gain, other, *delays}]
     laws = [x for d in tf.kernels.dispersions for c in d.characteristic for x in c.factors]
     is_lossless = not any(m[0] % 2 for f, e in laws if len(f) > 1 or e % 2 for m in f.monoms())
     solved = None
     if len(moving) == 1 and tf.has_formula and is_lossless and shaped == [other] * len(delays):
-        solved = _solved(tf, whole, moving[0], (gain, other), delays)
+        solved = _solved(tf, denominator, moving[0], (gain, other), delays)
     if solved is None:
         message = f"the characteristic function cannot be solved for {gain} and {other} in letters"
         hint = "it has to be linear in both, or contain one exp(-s*T) times one gain; waves must be undamped"
@@ -118,7 +118,11 @@ def boundary(model: Model, over: Sequence[str]) -> Conditions:
 
 
 def _solved(
-    tf: TransferFunction, whole: Factored, factor: fmpz_mpoly, over: Sequence[str], delays: Sequence[str]
+    tf: TransferFunction,
+    denominator: Factored,
+    factor: fmpz_mpoly,
+    over: Sequence[str],
+    delays: Sequence[str],
 ) -> tuple[FrequencyPage, list[Factored]] | None:
     """Return both parameters; or the square of a gain, and cosine and sine of the angle of a delay."""
     ring, (gain, other) = tf.ratio.ring, over
@@ -127,8 +131,8 @@ def _solved(
         if len(delays) > 1 or set(split) not in ({(0, 0, 0), (1, 1, 0)}, {(0, 1, 0), (1, 0, 0)}):
             return None
         still, turned = (Factored.polynomial(ring, split[key]) for key in sorted(split))
-        whole = still / turned
-    page = FrequencyPage(replace(tf, reduced=whole, closed=None, parts=None, definitions=()))
+        denominator = still / turned
+    page = FrequencyPage(replace(tf, reduced=denominator, closed=None, parts=None, definitions=()))
     value, index = page.value(), [page.ring.index[n] for n in (IMAGINARY, gain, other)]
 
     def parts(of: fmpz_mpoly, *key: int) -> list[fmpz_mpoly]:
@@ -172,8 +176,8 @@ def _arc(
     tf: TransferFunction, page: FrequencyPage, gain: str, cosine: Factored, sine: Factored
 ) -> tuple[Factored, int, int]:
     """Return x, q and m of an angle ``q*pi/2 + m*atan(x)``, or with m = 0 of ``(1 - x)*pi/2``."""
-    own, more = Signs.of(tf), {LAPLACE, gain}
-    signs = Signs(page.ring, own.positive | more, own.nonnegative | more)
+    of_function, more = Signs.of(tf), {LAPLACE, gain}
+    signs = Signs(page.ring, of_function.positive | more, of_function.nonnegative | more)
     c, s = (
         prod((signs.of_polynomial(f) ** (2 - e % 2) for f, e in x.factors), start=(x.unit > 0) - (x.unit < 0))
         for x in (cosine, sine)

@@ -171,7 +171,7 @@ def _moved(before: Sequence[Root], after: Sequence[Root], high_hz: float) -> tup
     return worst, len(pairs), len(one) - len(pairs)
 
 
-def moved_over(whole: Sequence[Term], gone: Sequence[Term], root: acb, halves: Sequence[arb]) -> float:
+def moved_over(terms_before: Sequence[Term], gone: Sequence[Term], root: acb, halves: Sequence[arb]) -> float:
     """Bound how far a root moves, relative to it, where terms go and letters are ``exp(x_j)`` times theirs.
 
     In ``s = root y exp(a x)``, a the slopes of its logarithm, y keeps next to 1 for ``|x_j| <= halves[j]``.
@@ -180,19 +180,19 @@ def moved_over(whole: Sequence[Term], gone: Sequence[Term], root: acb, halves: S
     ``N(0)`` over it of 1, and the one without these terms within ``M(R)`` over it of that, if both together
     do not exceed R (Rouche).
     """
-    own, without = ([(n, v * root**n, m) for n, v, m in terms] for terms in (whole, gone))
+    weighted, without = ([(n, v * root**n, m) for n, v, m in terms] for terms in (terms_before, gone))
     every = range(len(halves))
-    slope = sum((c * n for n, c, _ in own), acb(0))
-    rates = [-sum((c * m[j] for _, c, m in own), acb(0)) / slope for j in every]
+    slope = sum((c * n for n, c, _ in weighted), acb(0))
+    rates = [-sum((c * m[j] for _, c, m in weighted), acb(0)) / slope for j in every]
     # A power of each letter is taken out of all terms, so that it does not change the slope either.
-    means = [sum((c * n * (m[j] + n * rates[j]) for n, c, m in own), acb(0)) / slope for j in every]
-    cheap = (k for k in range(2, HIGHEST) if comb(len(halves) + k, k) * (30 + len(own)) < MOST_PRODUCTS)
+    means = [sum((c * n * (m[j] + n * rates[j]) for n, c, m in weighted), acb(0)) / slope for j in every]
+    cheap = (k for k in range(2, HIGHEST) if comb(len(halves) + k, k) * (30 + len(weighted)) < MOST_PRODUCTS)
     order = max(cheap, default=1)
     products = [p for k in range(order + 1) for p in combinations_with_replacement(every, k)]
     sizes = [prod((halves[i] / (k - p.index(i)) for k, i in enumerate(p, 1)), start=arb(1)) for p in products]
 
     def most(terms: Sequence[Term]) -> arb_poly:
-        parts = [[acb(0)] * (1 + max(n for n, *_ in own)) for _ in (*sizes, 1)]
+        parts = [[acb(0)] * (1 + max(n for n, *_ in weighted)) for _ in (*sizes, 1)]
         for n, c, m in terms:
             along = [m[j] + n * rates[j] - means[j] for j in every]
             x = sum((abs(a) * half for a, half in zip(along, halves, strict=True)), arb(0)).abs_upper()
@@ -202,7 +202,7 @@ def moved_over(whole: Sequence[Term], gone: Sequence[Term], root: acb, halves: S
         about_one = [(acb_poly(p)(acb_poly([1, 1])), x) for p, x in zip(parts, (*sizes, arb(1)), strict=True)]
         return sum((arb_poly([abs(c) * x for c in p]) for p, x in about_one), arb_poly([0]))
 
-    near, moved, reach = most(own), most(without), arb(0)
+    near, moved, reach = most(weighted), most(without), arb(0)
     for _ in range(TRIES):
         spend()
         floor = 2 * abs(slope) - near.derivative()(reach)

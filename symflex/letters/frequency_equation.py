@@ -91,17 +91,19 @@ def frequency_equations(reader: LetterReader, located: PoleZeroMap) -> list[Fact
         return [FactorInLetters("", None, note=NO_EQUATION)]
     naming.keep([Q])
     plain = {k.generator: (k.function, k.wavenumber, k.length) for k in tf.kernels.kernels}
-    turning = {g: (f, a.wavenumber, a.length * n) for a, n, own in page.angles() for f, g in own.items()}
+    turning = {
+        g: (f, a.wavenumber, a.length * n) for a, n, functions in page.angles() for f, g in functions.items()
+    }
     axes = (
         (_Axis(reader, "omega", page.ring, turning, page.laws(), naming), page.value().factors),
         (_Axis(reader, "sigma", tf.ring, plain, wavenumber_laws(tf), naming), tf.ratio.factors),
     )
     made = [
-        axis.equation(part, kind, own)
+        axis.equation(part, kind, functions)
         for axis, factors in axes
         for part, exponent in factors
         for kind in ["zeros" if exponent > 0 else "poles"]
-        if (own := [r for r in roots_of(located, kind) if axis.place(r) > 0])
+        if (functions := [r for r in roots_of(located, kind) if axis.place(r) > 0])
         and not axis.ring.used_in([part]).isdisjoint(axis.functions)
     ]
     for kind in ("poles", "zeros"):
@@ -129,7 +131,7 @@ class _Axis:
 
     def equation(self, part: fmpz_mpoly, kind: str, roots: Sequence[Root]) -> FactorInLetters:
         """Return the equation of a factor with those of the roots that are its own, or why there is none."""
-        used, own = self.ring.used_in([part]), self.reader.tf.ring
+        used, native = self.ring.used_in([part]), self.reader.tf.ring
         kernels = {g: x for g, x in self.functions.items() if g in used}
         waves = {w for _, w, _ in kernels.values()} | (used & {*self.reader.tf.kernels.wavenumbers})
         lengths, silent = [x for _, _, x in kernels.values()], FactorInLetters(kind, None, note=NO_EQUATION)
@@ -137,11 +139,11 @@ class _Axis:
         is_one = len(waves) == 1 and waves <= self.laws.keys() and longest and IMAGINARY not in used
         if not is_one or len(part) > MOST_TERMS:
             return silent
-        (wave,), whole = waves, longest[0]
+        (wave,), length = waves, longest[0]
         # omega^2 = square*wavenumber^order
         law, beta, s = self.laws[wave], *(Factored.generator(self.ring, n) for n in (wave, LAPLACE))
         order = law.exponent_of(self.ring.generator(wave))
-        square = (law * s**2 / beta**order).over(own)
+        square = (law * s**2 / beta**order).over(native)
         terms: dict[Key, Factored] = {}
         lowest = min(dict(m).get(0, 0) for m, _ in terms_of(part))
         for monomial, c in terms_of(part):
@@ -150,13 +152,15 @@ class _Axis:
             if odd or square.depends_on(LAPLACE):
                 return silent
             n, *shape = (powers.pop(g, 0) for g in (wave, *kernels))
-            term = prod((Factored.generator(own, a) ** e for a, e in powers.items()), start=square**times * c)
+            term = prod(
+                (Factored.generator(native, a) ** e for a, e in powers.items()), start=square**times * c
+            )
             terms[n + order * times, *shape] = terms.get((n + order * times, *shape), term * 0) + term
-        ratios, factor = self._equation(terms, whole, kernels)
+        ratios, factor = self._equation(terms, length, kernels)
         if len(ratios) > MOST_RATIOS:
             return silent
         printer, value = self.reader.printer, self.reader.value
-        scale = printer.square_root(square / whole**order)
+        scale = printer.square_root(square / length**order)
         above, *below = scale.children if isinstance(scale, Quotient) else (scale,)
         frequency = product_of([power(Name(Q), order // 2), above])
         frequency = quotient(frequency, *below) if below else frequency
@@ -169,7 +173,10 @@ class _Axis:
         return FactorInLetters(kind, factor, tuple(formulas), (), solutions, note)
 
     def _equation(
-        self, terms: Mapping[Key, Factored], whole: Factored, kernels: Mapping[str, tuple[str, str, Factored]]
+        self,
+        terms: Mapping[Key, Factored],
+        length: Factored,
+        kernels: Mapping[str, tuple[str, str, Factored]],
     ) -> tuple[dict[str, Factored], Expression]:
         """Return names of ratios of parameters, and what is zero in them."""
         ring, model, ratios = self.reader.tf.ring, self.reader.tf.model, dict[str, Factored]()
@@ -177,25 +184,25 @@ class _Axis:
         native = {n.name for e in used for n in names(e) if isinstance(n, Name)}
 
         def weight(item: tuple[Key, Factored]) -> tuple[int, int, int]:
-            own = ring.used_in(f for f, _ in item[1].factors)
+            names_used = ring.used_in(f for f, _ in item[1].factors)
             alike = sum((c / item[1]).is_constant for c in terms.values())
-            return len(own & native) - 2 * len(own - native), alike, -item[0][0]
+            return len(names_used & native) - 2 * len(names_used - native), alike, -item[0][0]
 
         (first, *_), reference = max(terms.items(), key=weight)
-        found = [(key, c / reference * whole ** (first - key[0])) for key, c in terms.items()]
+        found = [(key, c / reference * length ** (first - key[0])) for key, c in terms.items()]
         groups: dict[tuple[tuple[str, ...], int], dict[Key, Fraction]] = {}
         for (n, *shape), ratio in sorted(found, key=lambda item: len(item[1].factors)):
             products = [(), *((a,) for a in ratios), *combinations_with_replacement(ratios, 2)]
             rests = [(held, ratio / prod((ratios[a] for a in held), start=ratio**0)) for held in products]
-            held, rest = next(((held, x) for held, x in rests if x.is_constant), ((), ratio))
-            if not rest.is_constant:
+            held, remainder = next(((held, x) for held, x in rests if x.is_constant), ((), ratio))
+            if not remainder.is_constant:
                 held = self.naming.take("mu" if n > first else "kappa")
-                ratios[held[0]], rest = ratio / ratio.unit, ratio**0 * ratio.unit
-            groups.setdefault((held, n), {})[0, *shape] = rest.unit
+                ratios[held[0]], remainder = ratio / ratio.unit, ratio**0 * ratio.unit
+            groups.setdefault((held, n), {})[0, *shape] = remainder.unit
         small, least = Ring((LAPLACE, *kernels)), min(n for _, n in groups)
         below = lcm(*(c.denominator for group in groups.values() for c in group.values()))
         plain, q = self.reader.printer, Name(Q)
-        angles = {g: wave_times_length(plain, q, x / whole) for g, (_, _, x) in kernels.items()}
+        angles = {g: wave_times_length(plain, q, x / length) for g, (_, _, x) in kernels.items()}
         symbols = {g: Call(f, angles[g]) for g, (f, _, _) in kernels.items()}
         printer, parts = ProductPrinter(Arranger.plain(small, symbols, kernels)), list[Expression]()
         for (held, n), group in groups.items():

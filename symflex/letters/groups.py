@@ -218,8 +218,8 @@ def _invariants(tf: TransferFunction) -> tuple[list[Exponents], Exponents]:
         if orders is None:
             raise NotInLettersError("its waves have no formula")
         for i, n in orders.items():
-            own = powers(law.characteristic[i])
-            rows += [times(({w: Fraction(n)}, ONE), (own, -ONE)) for w in law.wavenumbers]
+            exponents = powers(law.characteristic[i])
+            rows += [times(({w: Fraction(n)}, ONE), (exponents, -ONE)) for w in law.wavenumbers]
     for k in tf.kernels.kernels:
         rate = {k.wavenumber: ONE} if k.wavenumber else powers(k.dispersion.shift)
         rows.append(times((rate, ONE), (powers(k.length), ONE)))
@@ -238,8 +238,8 @@ def _exponents(expression: Expression) -> Exponents | None:
         inside = _exponents(base.argument) if isinstance(base, e.Call) and base.name == "sqrt" else None
         if inside is None and not isinstance(base, Name):
             return None
-        own = {base.name: Fraction(2)} if isinstance(base, Name) else inside or {}
-        parts.append((own, Fraction(n, 2)))
+        exponents = {base.name: Fraction(2)} if isinstance(base, Name) else inside or {}
+        parts.append((exponents, Fraction(n, 2)))
     return times(*parts)
 
 

@@ -128,8 +128,8 @@ class InLetters:
     @property
     def where(self) -> list[Row]:
         """Lines for the names of the model that occur."""
-        own = {name: line for row in self.rows for name, line in row.where}
-        lines, writer = [*definitions_of(self.tf), *own.items()], Writer(model_labels(self.tf.model))
+        row_lines = {name: line for row in self.rows for name, line in row.where}
+        lines, writer = [*definitions_of(self.tf), *row_lines.items()], Writer(model_labels(self.tf.model))
         used = reachable([row.expression for row in self.rows], lines)
         return [Row(f"where {name}", " =", f"{writer.label(name).latex} &=", line) for name, line in used]
 
@@ -200,8 +200,8 @@ class LimitFinder:
         if any(law.kind in ("general", "varying") for law in laws) or (self.end != ENDS[0] and self._pairs):
             raise NotInLettersError("its waves are not roots of one term")
         named = ((n, law.kind, law.characteristic[0]) for law in laws for n in law.wavenumbers)
-        own = {"wave": (-1, 2), "bending": (Fraction(1, 4), 4), "pair": (1, 4)}
-        return {name: (c * own[kind][0], own[kind][1]) for name, kind, c in named}
+        by_kind = {"wave": (-1, 2), "bending": (Fraction(1, 4), 4), "pair": (1, 4)}
+        return {name: (c * by_kind[kind][0], by_kind[kind][1]) for name, kind, c in named}
 
     @cached_property
     def _pairs(self) -> list[Dispersion]:
@@ -228,9 +228,11 @@ class LimitFinder:
             leads: dict[Fraction, fmpz_mpoly] = {}
             parts = coefficients_of(ring, factor, [0, *(ring.index[w] for w in waves)])
             for (n, *powers), part in parts.items():
-                own = n + sum((n * rate for n, rate in zip(powers, waves.values(), strict=True)), Fraction(0))
-                whole = prod((ring.generator(w) ** n for w, n in zip(waves, powers, strict=True)), start=part)
-                leads[own] = leads[own] + whole if own in leads else whole
+                power_of_s = n + sum(
+                    (n * rate for n, rate in zip(powers, waves.values(), strict=True)), Fraction(0)
+                )
+                lead = prod((ring.generator(w) ** n for w, n in zip(waves, powers, strict=True)), start=part)
+                leads[power_of_s] = leads[power_of_s] + lead if power_of_s in leads else lead
             best = (min if self.end == ENDS[0] else max)(leads)
             total, power = total * Factored.polynomial(ring, leads[best]) ** exponent, power + best * exponent
         return total, power
@@ -273,12 +275,12 @@ class LimitFinder:
         if amount == 0:
             raise NotInLettersError(f"{format_expression(leading)} is zero for the declared values")
         unit = str(unit_of(tf.unit).dimension * Dimension(s=power)) if tf.unit and power else tf.unit
-        own = None if growth or turns else power
-        slope = f"{20 * float(power):+.4g} dB/decade" if own else ""
+        shown_power = None if growth or turns else power
+        slope = f"{20 * float(power):+.4g} dB/decade" if shown_power else ""
         words = ", ".join(filter(None, (self._words(power), slope)))
-        left = rf"{ratio_latex(tf)} &\overset{{s \to {mark}}}{{\sim}}"
+        left_side = rf"{ratio_latex(tf)} &\overset{{s \to {mark}}}{{\sim}}"
         relation = ":".ljust(len(ENDS[1]) - len(self.end) + 2)
-        return Row(name, relation, left, leading, words, amount, unit, own), front
+        return Row(name, relation, left_side, leading, words, amount, unit, shown_power), front
 
     def _where_waves_stay(self) -> tuple[Row, Powers]:
         """Return the value at s = 0 of a function whose wavenumbers are not 0 there, as of a cooled fin."""
@@ -291,13 +293,13 @@ class LimitFinder:
             value = simplified(e.quotient(form.num, form.den), at_rest)
         except ZeroDivisionError:
             raise NotInLettersError("it has a pole at s = 0 beside waves") from None
-        whole = with_lines(value, lines)
+        expanded = with_lines(value, lines)
         if len(lines) < len(form.where) or e.is_number(value, 0):
             raise NotInLettersError("it has a zero at s = 0 beside waves")
-        self._check(whole)
-        left, power = rf"{ratio_latex(self.tf)} &\overset{{s \to 0}}{{\sim}}", Fraction(0)
-        row = Row("s -> 0", ":".ljust(len(ENDS[1]) + 1), left, value, self._words(power))
-        row = row._replace(value=value_of(self.tf, whole), unit=self.tf.unit, power=power)
+        self._check(expanded)
+        left_side, power = rf"{ratio_latex(self.tf)} &\overset{{s \to 0}}{{\sim}}", Fraction(0)
+        row = Row("s -> 0", ":".ljust(len(ENDS[1]) + 1), left_side, value, self._words(power))
+        row = row._replace(value=value_of(self.tf, expanded), unit=self.tf.unit, power=power)
         return row._replace(where=tuple(lines.items())), {value: Fraction(1)}
 
     def expanded(self, factor: fmpz_mpoly, count: int = 1) -> Factored:
@@ -307,8 +309,13 @@ class LimitFinder:
         slowest = min((waves.get(k.wavenumber, Fraction(1)) for k in kernels), default=inf)
         for most in ORDERS:
             series = {k.generator: self._series(k, most) for k in kernels}
-            whole, total = composed(Factored.polynomial(ring, factor), series), Factored.number(ring, 0)
-            parts = coefficients_of(ring, whole.numerator().expand(), [ring.index[name] for name in laws])
+            composed_factor, total = (
+                composed(Factored.polynomial(ring, factor), series),
+                Factored.number(ring, 0),
+            )
+            parts = coefficients_of(
+                ring, composed_factor.numerator().expand(), [ring.index[name] for name in laws]
+            )
             weights = {key: sum(n * waves[name] for n, name in zip(key, laws, strict=True)) for key in parts}
             # Further terms of the series would be added to those that are left out.
             terms = {
@@ -317,13 +324,13 @@ class LimitFinder:
             for law in self._pairs:
                 terms = self._symmetric(law, terms, slowest * most)
             for powers, term in terms.items():
-                own = [term]
+                wave_powers = [term]
                 for n, (name, (square, order)) in zip(powers, laws.items(), strict=True):
-                    own += [square ** (n // order), Factored.generator(ring, name) ** (n % order)]
-                total = total + prod(own[1:], start=term)
+                    wave_powers += [square ** (n // order), Factored.generator(ring, name) ** (n % order)]
+                total = total + prod(wave_powers[1:], start=term)
             power = self._end(total, waves)[1]
             if not total.is_zero and power + count - 1 < slowest * (most + 1):
-                return total / whole.denominator()
+                return total / composed_factor.denominator()
         raise NotInLettersError("its power series at s = 0 is too long")
 
     def _symmetric(
@@ -350,17 +357,17 @@ class LimitFinder:
                 slopes.append(both * slopes[-1] - product * slopes[-2])
             front = x * product ** min(a, b)
             u, v = front * slopes[apart], front * (-product * slopes[apart - 1] if apart else 1)
-            rest = tuple(e % 2 if n in (i, j) else e for n, e in enumerate(key))
-            p, q = found.get(rest, (zero, zero))
-            found[rest] = (p + u, q + v) if a >= b else (p - u, q + v + u * both)
-        whole, rate = dict[Any, Factored](), self._waves[law.wavenumbers[0]]
+            parities = tuple(e % 2 if n in (i, j) else e for n, e in enumerate(key))
+            p, q = found.get(parities, (zero, zero))
+            found[parities] = (p + u, q + v) if a >= b else (p - u, q + v + u * both)
+        symmetric, rate = dict[Any, Factored](), self._waves[law.wavenumbers[0]]
         for key, (u, v) in found.items():
             room = most - rate * (key[i] + key[j])
             p, q, r = cut(u, room - 2 * rate), cut(v, room), cut(u * both + v * 2, room)
             if not (p.is_zero or r.is_zero):
                 raise NotInLettersError("its waves are not roots of one term")
-            whole[key] = q if p.is_zero else p * (one**2 - other**2) / 2
-        return whole
+            symmetric[key] = q if p.is_zero else p * (one**2 - other**2) / 2
+        return symmetric
 
     def _series(self, kernel: Kernel, most: int) -> Factored:
         """Return the Taylor series of a kernel, up to a power of its argument."""
@@ -376,9 +383,9 @@ class LimitFinder:
         """Return what leads in a factor far out: cosh and sinh are half an exponential."""
         ring, kernels = self._ring, self.tf.kernels.kernels
         pairs = [(even, odd) for even, odd in self.tf.kernels.pairs if even.function == "cosh"]
-        own = ring.replaced(factor, {odd.generator: ring.generator(even.generator) for even, odd in pairs})
+        evened = ring.replaced(factor, {odd.generator: ring.generator(even.generator) for even, odd in pairs})
         growing = [*(even for even, _ in pairs), *(k for k in kernels if k.function == "exp")]
-        parts = coefficients_of(ring, own, [ring.index[k.generator] for k in growing])
+        parts = coefficients_of(ring, evened, [ring.index[k.generator] for k in growing])
         # A delay decays where a wave grows.
         columns = zip(growing, zip(*parts, strict=True), strict=True)
         top = [max(n) if k.wavenumber else min(n) for k, n in columns]
@@ -453,7 +460,7 @@ class LimitFinder:
     def _check(self, leading: Expression) -> None:
         """Compare the function with the term, read again, ever closer to the end."""
         sign, root = -1 if self.end == ENDS[0] else 1, self.tf.model.root
-        place, term = S if root is None else in_roots(S, root), opened(self.tf, leading)
+        argument, term = S if root is None else in_roots(S, root), opened(self.tf, leading)
         for setting, s in dict(probes_of(self.tf).points).items():
             with precision(BITS):
                 known = {name: acb(enclosure(v)()) for name, v in setting.values.items()} | {"pi": acb.pi()}
@@ -461,7 +468,7 @@ class LimitFinder:
                 for step in STEPS:
                     far = step if self.tf.kernels else FARTHER * step
                     known[LAPLACE] = abs(acb(*map(ball, s))) * acb(2) ** (sign * far)
-                    at, printed = (read(x, known.__getitem__) for x in (place, term))
+                    at, printed = (read(x, known.__getitem__) for x in (argument, term))
                     errors.append(float(abs(setting.evaluate(None, BITS)(at) / printed - 1).upper()))
             is_waning = all(b < WANING * a or b < NOTHING for a, b in pairwise(errors))
             if not (is_waning and errors[-1] < CLOSE):
@@ -509,18 +516,18 @@ def written_powers(powers: Powers) -> Expression:
     """Return powers as one fraction, equal roots as one, and the power of s apart."""
     groups: dict[int, dict[Expression, int]] = {}
     for base, n in powers.items():
-        whole = int(n) if base != S else 0
-        for share in (Fraction(whole), n - whole) if base != S else ():
+        integer = int(n) if base != S else 0
+        for share in (Fraction(integer), n - integer) if base != S else ():
             if share:
                 groups.setdefault(share.denominator, {})[base] = share.numerator
     factors = []
-    for root, own in sorted(groups.items()):
+    for root, of_root in sorted(groups.items()):
         # 1/sqrt(x) rather than sqrt(1/x)
-        sign = 1 if any(n > 0 for n in own.values()) else -1
+        sign = 1 if any(n > 0 for n in of_root.values()) else -1
         front = prod(
-            (b.value ** (n * sign) for b, n in own.items() if isinstance(b, Number)), start=Fraction(1)
+            (b.value ** (n * sign) for b, n in of_root.items() if isinstance(b, Number)), start=Fraction(1)
         )
-        inside = of_powers(front, {b: n * sign for b, n in own.items() if not isinstance(b, Number)})
+        inside = of_powers(front, {b: n * sign for b, n in of_root.items() if not isinstance(b, Number)})
         factors.append((_power(inside, Fraction(1, root)), sign))
     if of_s := powers.get(S):
         factors.append((_power(S, abs(of_s)), 1 if of_s > 0 else -1))

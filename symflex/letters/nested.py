@@ -102,8 +102,8 @@ class NestedForm:
         for name, line in parts.items():
             if isinstance(line, e.Name | e.Number) and name not in (NUM, DEN):
                 parts = {n: plain(x, {name: parts[name]}) for n, x in parts.items()}
-        whole = self._tidied(e.quotient(parts[NUM], parts[DEN]), parts)
-        num, den = whole.children if isinstance(whole, e.Quotient) else (whole, e.number(1))
+        quotient = self._tidied(e.quotient(parts[NUM], parts[DEN]), parts)
+        num, den = quotient.children if isinstance(quotient, e.Quotient) else (quotient, e.number(1))
         return replace(self.form, num=num, den=den, where=reachable((num, den), parts.items()), source=None)
 
     def _tidied(self, expression: e.Expression, parts: Parts) -> e.Expression:
@@ -132,8 +132,8 @@ def _opened(expression: e.Expression, parts: Parts) -> e.Expression:
 
 def _less(parts: Parts, total: e.Expression, term: e.Expression) -> Parts:
     """Return parts without a term of a sum."""
-    rest = e.sum_of([x for x in total.children if x != term])
-    return {name: plain(e.replace_node(x, total, rest), {}) for name, x in parts.items()}
+    remaining = e.sum_of([x for x in total.children if x != term])
+    return {name: plain(e.replace_node(x, total, remaining), {}) for name, x in parts.items()}
 
 
 def _divided(one: arb_poly, other: arb_poly) -> arb_poly:

@@ -34,8 +34,8 @@ from symflex.transfer.lowest_terms import cancel
 def truncated(tf: TransferFunction, order: int) -> tuple[TransferFunction, PrintedForm]:
     """Return a distributed function as a rational one in letters, up to a power of s."""
     if tf.is_rational:
-        whole = Approximation(("it is a rational function of s already",), {"kind": "order"}, is_whole=True)
-        return tf, replace(print_form(tf), approximation=whole)
+        exact = Approximation(("it is a rational function of s already",), {"kind": "order"}, is_whole=True)
+        return tf, replace(print_form(tf), approximation=exact)
     num, den = _expanded(tf, order + 1)
     plain = Ring(tuple(n for n in num.ring.names if n not in tf.kernels.generators))
     places = [n.node if not n.component else f"{n.node}.{n.component}" for n in tf.input.nodes]
@@ -46,23 +46,29 @@ def truncated(tf: TransferFunction, order: int) -> tuple[TransferFunction, Print
     lowest = min(map(_begins, sides))
     series = [[c.over(plain) for c in _series(side, order + 1)] for side in sides]
     terms = [
-        [(first + k, c) for k, c in enumerate(own) if not c.is_zero and first + k <= max(order, first)]
-        for own, first in zip(series, (_begins(side) - lowest for side in sides), strict=True)
+        [
+            (first + k, c)
+            for k, c in enumerate(coefficients)
+            if not c.is_zero and first + k <= max(order, first)
+        ]
+        for coefficients, first in zip(series, (_begins(side) - lowest for side in sides), strict=True)
     ]
     zero, s = Factored.number(plain, 0), Factored.generator(plain, "s")
-    above, below = (sum((c * s**k for k, c in own), zero) for own in terms)
+    above, below = (sum((c * s**k for k, c in coefficients), zero) for coefficients in terms)
     ratio, _ = cancel(above, below)
-    own = replace(tf, reduced=ratio, closed=None, hidden=(), kernels=NO_KERNELS, parts=None, solve=None)
-    form = (_stiffness(own, terms[1]) if is_stiffness else None) or print_form(own)
+    coefficients = replace(
+        tf, reduced=ratio, closed=None, hidden=(), kernels=NO_KERNELS, parts=None, solve=None
+    )
+    form = (_stiffness(coefficients, terms[1]) if is_stiffness else None) or print_form(coefficients)
     what = "dynamic stiffness" if is_stiffness else "numerator and denominator"
     said = [f"exact {what} up to s^{order}"]
     facts: dict[str, object] = {"kind": "order", "order": order, "stiffness": is_stiffness}
     if any(p.value is None for p in tf.parameters):
         said.append("no error is known, as a parameter has no value")
-        return own, replace(form, approximation=Approximation(tuple(said), facts))
-    before, after = bind(tf), bind(own)
+        return coefficients, replace(form, approximation=Approximation(tuple(said), facts))
+    before, after = bind(tf), bind(coefficients)
     apart = distance(before, after, roots_of(before, after), (0.01, 0.1))
-    return own, replace(form, approximation=Approximation((*said, *apart.said), facts | apart.facts))
+    return coefficients, replace(form, approximation=Approximation((*said, *apart.said), facts | apart.facts))
 
 
 def _expanded(tf: TransferFunction, count: int) -> tuple[Factored, Factored]:
@@ -97,11 +103,15 @@ def _series(value: Factored, count: int) -> list[Factored]:
     for factor, exponent in value.factors:
         powers = by_powers(value.ring, factor)
         least, none = min(powers), value.ring.constant(0)
-        own = [Factored.polynomial(value.ring, powers.get(least + n, none)) for n in range(count)]
+        coefficients = [Factored.polynomial(value.ring, powers.get(least + n, none)) for n in range(count)]
         for _ in range(abs(exponent)):
             for n in range(count) if exponent < 0 else reversed(range(count)):
-                others = sum((own[i] * total[n - i] for i in range(1, n + 1)), zero)
-                total[n] = (total[n] - others) / own[0] if exponent < 0 else total[n] * own[0] + others
+                others = sum((coefficients[i] * total[n - i] for i in range(1, n + 1)), zero)
+                total[n] = (
+                    (total[n] - others) / coefficients[0]
+                    if exponent < 0
+                    else total[n] * coefficients[0] + others
+                )
     return total
 
 

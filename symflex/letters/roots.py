@@ -149,17 +149,21 @@ class LetterReader:
         silent = FactorInLetters(kind, None, note=f"a factor of degree {degree} in s has no short formula")
         if len(factor) > MOST_TERMS:
             return silent
-        own = [r for r in roots if self.value(printed, s=r.enclosure()).contains(0)]
-        if not own or len(own) > degree or (degree <= PAIR and sum(r.multiplicity for r in own) < degree):
+        of_factor = [r for r in roots if self.value(printed, s=r.enclosure()).contains(0)]
+        if (
+            not of_factor
+            or len(of_factor) > degree
+            or (degree <= PAIR and sum(r.multiplicity for r in of_factor) < degree)
+        ):
             return None
-        formulas, kinds = tuple(self._formulas(c, own)), tuple(self._kinds(kind, c))
+        formulas, kinds = tuple(self._formulas(c, of_factor)), tuple(self._kinds(kind, c))
         return FactorInLetters(kind, printed, formulas, kinds) if formulas or kinds else silent
 
-    def _formulas(self, c: Sequence[fmpz_mpoly], own: Sequence[Root]) -> Iterator[RootFormula]:
+    def _formulas(self, c: Sequence[fmpz_mpoly], roots: Sequence[Root]) -> Iterator[RootFormula]:
         """Yield the formulas of a factor whose values are those of its roots."""
         degree = len(c) - 1
         ratio = Factored.polynomial(self.tf.ring, c[0]) / Factored.polynomial(self.tf.ring, c[-1])
-        first, last = own[0], own[-1]
+        first, last = roots[0], roots[-1]
         omega = (first.size() * last.size()).sqrt()
         tried: list[tuple[str, Expression, arb, str]] = []
         if degree == 1 and first.re < 0:
@@ -181,17 +185,17 @@ class LetterReader:
             sides = (map(partial(Factored.polynomial, ring), each) for each in terms)
             mean, square = (cancel(above, below)[0] for above, below in sides)
             over, mean_text = self.printer.sum(middle), self.printer.quotient(mean)
-            whole = Call("sqrt", e.sum_of([e.power(over, 2), e.negative(self.printer.sum(others))]))
-            sizes = [r.size() for r in own if r.im > 0 and r.on_imaginary_axis]
+            square_root = Call("sqrt", e.sum_of([e.power(over, 2), e.negative(self.printer.sum(others))]))
+            sizes = [r.size() for r in roots if r.im > 0 and r.on_imaginary_axis]
             for sign in (-1, 1):
-                one, other = (x if sign > 0 else e.negative(x) for x in (whole, self.root(square)))
+                one, other = (x if sign > 0 else e.negative(x) for x in (square_root, self.root(square)))
                 two = e.quotient(e.sum_of([over, one]), self.printer.sum(below)), e.sum_of([mean_text, other])
                 root = min((Call("sqrt", x) for x in two), key=length)
                 tried += [("omega", root, x, "rad/s") for x in sizes]
         for name, expression, value, unit in tried:
             apart = self.value(expression) - value  # not finite where zeta is 0
             if length(expression) <= LONGEST and apart.is_finite() and apart.contains(0):
-                mine = own if degree <= PAIR else [r for r in own if r.size().overlaps(value)]
+                mine = roots if degree <= PAIR else [r for r in roots if r.size().overlaps(value)]
                 yield RootFormula(name, expression, value, unit, tuple(mine))
 
     def root(self, square: Factored) -> Expression:
@@ -255,11 +259,13 @@ def _even_kinds(ring: Ring, c: Sequence[fmpz_mpoly]) -> Sequence[tuple[str, Sequ
     else:
         e, d, middle, b, a = c
         fold = 8 * a * middle - 3 * b**2
-        rest = 64 * a**3 * e - 16 * a**2 * middle**2 + 16 * a * b**2 * middle - 16 * a**2 * b * d - 3 * b**4
+        constant = (
+            64 * a**3 * e - 16 * a**2 * middle**2 + 16 * a * b**2 * middle - 16 * a**2 * b * d - 3 * b**4
+        )
         others = {"a quartet and two imaginary pairs": [*mixed, *imaginary]}
         others |= {"a quartet, an imaginary and a real pair": [*mixed, (last, -1)]}
-        others |= {"two quartets": [*apart, (fold, 1)], "two quartets, too,": [*apart, (rest, 1)]}
-        apart += [(fold, -1), (rest, -1)]
+        others |= {"two quartets": [*apart, (fold, 1)], "two quartets, too,": [*apart, (constant, 1)]}
+        apart += [(fold, -1), (constant, -1)]
     count = ("two", "three", "four")[pairs - PAIR]
     alike = {f"{count} imaginary pairs": [*apart, *imaginary], f"{count} real pairs": [*apart, *real]}
     return tuple((alike | others).items())

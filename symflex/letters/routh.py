@@ -101,8 +101,10 @@ class Conditions:
     def __str__(self) -> str:
         loose = ", ".join(p.name for p in self.model.parameters if p.assume != "positive")
         values = f"for positive values of all letters{f' but {loose}' if loose else ''}"
-        rest = (f"where {root} is real" for root in self.roots_at_rest)
-        return "\n    ".join(["\n".join(broken(self.sentence)), *map(str, self.conditions), values, *rest])
+        realness = (f"where {root} is real" for root in self.roots_at_rest)
+        return "\n    ".join(
+            ["\n".join(broken(self.sentence)), *map(str, self.conditions), values, *realness]
+        )
 
     @property
     def roots_at_rest(self) -> list[str]:
@@ -121,9 +123,9 @@ class Conditions:
     def to_json_dict(self) -> dict[str, object]:
         """Return the conditions in the schema ``symflex.stability/1``."""
         shown = [{"condition": str(c) if c.sides else None, "terms": c.terms} for c in self.conditions]
-        own = {"of": self.of, "never": self.is_never, "on_axis": [*map(list, self.on_axis)]}
-        own |= {"real": roots} if (roots := self.roots_at_rest) else {}
-        return {"schema": "symflex.stability/1", **own, "conditions": shown}
+        document = {"of": self.of, "never": self.is_never, "on_axis": [*map(list, self.on_axis)]}
+        document |= {"real": roots} if (roots := self.roots_at_rest) else {}
+        return {"schema": "symflex.stability/1", **document, "conditions": shown}
 
 
 def conditions(model: Model, of: str = POLES, tf: str | None = None) -> Conditions:
@@ -140,13 +142,13 @@ def conditions(model: Model, of: str = POLES, tf: str | None = None) -> Conditio
         raise ModelError(Diagnostic("SF801", message, None, hint))
     pairs = pick_pairs(model, [tf] if tf else [])
     if of != POLES:
-        (own,) = derive_all(model, pairs[:1])
-        return conditions_of(own, f"zeros of {own.name}", own.num.factors)
+        (derived,) = derive_all(model, pairs[:1])
+        return conditions_of(derived, f"zeros of {derived.name}", derived.num.factors)
     pair = seen_pair(model)
-    (own,) = derive_all(observed(model, pair[0]), [pair])
-    hidden = ((h.polynomial, h.multiplicity) for h in own.hidden)
+    (derived,) = derive_all(observed(model, pair[0]), [pair])
+    hidden = ((h.polynomial, h.multiplicity) for h in derived.hidden)
     loose = _of_outputs(model) if is_passive(model) else None
-    return conditions_of(own, of, [*own.den.factors, *hidden], loose)
+    return conditions_of(derived, of, [*derived.den.factors, *hidden], loose)
 
 
 def conditions_of(
@@ -295,20 +297,20 @@ class Signs:
         split = [((-1, []) if f.is_zero() else irreducible_factors(f), f) for f in needed]
         split.sort(key=lambda each: sum(not self.of_polynomial(f) for f, _ in each[0][1]))
         for (front, factors), polynomial in split:
-            sign, left = (1 if front > 0 else -1), []
+            sign, undecided = (1 if front > 0 else -1), []
             for factor, times in factors:
-                if own := self.of_polynomial(factor) or known.get(str(factor), 0):
-                    sign *= own**times
+                if factor_sign := self.of_polynomial(factor) or known.get(str(factor), 0):
+                    sign *= factor_sign**times
                 elif times % 2:
-                    left.append(factor)
+                    undecided.append(factor)
                 else:
                     nonzero[str(factor)] = factor
-            if not left and sign < 0:  # for its own signs, or because another condition contradicts it
+            if not undecided and sign < 0:  # for its own signs, or because another condition contradicts it
                 return [(polynomial if self.of_polynomial(polynomial) else self.ring.constant(-1), ">")]
-            if len(left) == 1:
-                known[str(left[0])] = sign
-            whole = prod(left, start=self.ring.constant(sign))
-            kept |= {str(whole): whole} if left else {}
+            if len(undecided) == 1:
+                known[str(undecided[0])] = sign
+            reduced_product = prod(undecided, start=self.ring.constant(sign))
+            kept |= {str(reduced_product): reduced_product} if undecided else {}
         scales = [self.ring.constant(1), *(c for c in needed if self.of_polynomial(c) == 1)]
         chosen = sorted(kept.values(), key=len)
         for one in chosen[::-1]:
@@ -335,9 +337,12 @@ def _check(tf: TransferFunction, signs: Signs, moving: Sequence[Factor], found: 
             known |= {c.generator: read(c.expression, known.__getitem__) for c in tf.constants}
             holds, wrong = True, ""
             for polynomial, shown in found:
-                own, sides = value(polynomial), [read(side, known.__getitem__) for side in shown.sides or ()]
-                holds &= bool(own.real > 0 if shown.sign == ">" else own != 0)
-                wrong = str(shown) if sides and not own.overlaps(sides[0] - sides[1]) else wrong
+                left_side, sides = (
+                    value(polynomial),
+                    [read(side, known.__getitem__) for side in shown.sides or ()],
+                )
+                holds &= bool(left_side.real > 0 if shown.sign == ">" else left_side != 0)
+                wrong = str(shown) if sides and not left_side.overlaps(sides[0] - sides[1]) else wrong
             placed = [_is_placed([*map(value, ring.coefficients(f))][::step], step) for f, step in moving]
         if wrong or (None not in placed and holds != all(placed)):
             message = f"conditions are not shown, as they are wrong: {wrong or known}"

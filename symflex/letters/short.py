@@ -105,9 +105,9 @@ class _Letters:
         """Return a term of a coefficient at the values."""
         return prod((v ** term[0][i] for i, v in self.values.items() if term[0][i]), start=arb(term[1]))
 
-    def shares(self, whole: Sequence[Term], wanted: Sequence[Term]) -> list[Share]:
+    def shares(self, coefficient: Sequence[Term], wanted: Sequence[Term]) -> list[Share]:
         """Return how large terms are at most beside a whole coefficient, and their signs; nan if unknown."""
-        sizes = [(term, self.value(term)) for term in whole]
+        sizes = [(term, self.value(term)) for term in coefficient]
         sign = 1 if sum((v for _, v in sizes), arb(0)) > 0 else -1
         main = [(term, v) for term, v in sizes if v * sign > 0]
         weight = sum((v for _, v in main), arb(0))
@@ -127,13 +127,16 @@ class _Letters:
 
     def change(self, before: fmpz_mpoly, after: fmpz_mpoly) -> tuple[float, float]:
         """Return the largest relative change of a coefficient, at the values and over the box, rounded up."""
-        gone, whole, worst = self.groups(before - after), self.groups(before), (0.0, 0.0)
+        gone, groups_before, worst = self.groups(before - after), self.groups(before), (0.0, 0.0)
         for key, terms in gone.items():
             spend()
-            if key not in whole:  # its terms had cancelled
+            if key not in groups_before:  # its terms had cancelled
                 return inf, inf
-            total = sum(map(self.value, whole[key]), arb(0))
-            each = abs(sum(map(self.value, terms), arb(0)) / total), _most(self.shares(whole[key], terms))
+            total = sum(map(self.value, groups_before[key]), arb(0))
+            each = (
+                abs(sum(map(self.value, terms), arb(0)) / total),
+                _most(self.shares(groups_before[key], terms)),
+            )
             worst = max(worst[0], upper(each[0])), max(worst[1], upper(each[1]))
         return worst
 
@@ -143,18 +146,18 @@ class _Letters:
         least, (top, *others) = min(groups[0])[0], map(max, zip(*groups[0], strict=True))
         if not groups[1] or any(others):
             return inf if groups[1] else 0.0
-        whole, gone = (
+        terms_before, gone = (
             [(key[0] - least, acb(self.value(t)), [t[0][i] for i in self.ends]) for key in g for t in g[key]]
             for g in groups
         )
-        side = [sum((v for n, v, _ in whole if n == k), arb(0)) for k in range(top - least + 1)]
+        side = [sum((v for n, v, _ in terms_before if n == k), arb(0)) for k in range(top - least + 1)]
         try:
             roots = acb_poly(side).roots()
         except ValueError:  # some root is a multiple one
             return inf
         shown = [r for r in roots if not (r.imag < 0 or abs(r) > 2 * arb.pi() * high)]
         halves = [abs(a).max(abs(b)) for a, b in self.ends.values()]
-        return max((moved_over(whole, gone, r, halves) for r in shown), default=0.0)
+        return max((moved_over(terms_before, gone, r, halves) for r in shown), default=0.0)
 
 
 def _most(shares: Sequence[Share]) -> arb:
@@ -185,11 +188,12 @@ class _Pruned:
                 gone.setdefault(key, []).append(each)
         # A sum of kernels is a function of s only with all its terms: those with the same letters.
         there = Counter(self.letters_of(term) for shares in self.shares.values() for _, term in shares)
-        there.subtract(self.letters_of(term) for own in gone.values() for _, term in own)
+        there.subtract(self.letters_of(term) for pruned in gone.values() for _, term in pruned)
         kept = (
-            (key, [each for each in own if not there[self.letters_of(each[1])]]) for key, own in gone.items()
+            (key, [each for each in pruned if not there[self.letters_of(each[1])]])
+            for key, pruned in gone.items()
         )
-        return {key: own for key, own in kept if own}
+        return {key: pruned for key, pruned in kept if pruned}
 
     def letters_of(self, term: Term) -> tuple[int, ...]:
         """Return the exponents of letters and s in a term."""
@@ -207,7 +211,7 @@ def _sums_of(tf: TransferFunction, letters: _Letters) -> list[_Pruned]:
 
 def _without(each: _Pruned, gone: Mapping[Key, Sequence[tuple[Share, Term]]]) -> fmpz_mpoly:
     context = each.polynomial.context()
-    return each.polynomial - context.from_dict(dict(term for own in gone.values() for _, term in own))
+    return each.polynomial - context.from_dict(dict(term for pruned in gone.values() for _, term in pruned))
 
 
 def _shorter(
@@ -232,13 +236,13 @@ def _shorter(
             if max(change) <= most:
                 break
         changes.append(change)
-        for each, own, polynomial in zip(side, gone, after, strict=True):
+        for each, pruned, polynomial in zip(side, gone, after, strict=True):
             image = Factored.polynomial(ring, polynomial)
-            if own and len(polynomial) <= FACTORED_TERMS and not tf.kernels:
+            if pruned and len(polynomial) <= FACTORED_TERMS and not tf.kernels:
                 number, factors = irreducible_factors(polynomial)
                 image = Factored(ring, Fraction(number), tuple(factors))
             images.append((each.polynomial, image, each.exponent))
-            dropped += [(upper(_most([x for x, _ in terms])), each, key) for key, terms in own.items()]
+            dropped += [(upper(_most([x for x, _ in terms])), each, key) for key, terms in pruned.items()]
 
     def shorter(factor: fmpz_mpoly) -> Factored:
         return next((new for old, new, _ in images if old == factor), Factored.polynomial(ring, factor))

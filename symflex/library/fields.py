@@ -132,8 +132,8 @@ def first_order(
 
 def product(values: Mapping[str, Factored], *names: str) -> Factored:
     """Return a product of values, such as E*I, which may be given by itself as EI."""
-    own = values.get("".join(names))
-    return prod((values[name] for name in names[1:]), start=values[names[0]]) if own is None else own
+    given = values.get("".join(names))
+    return prod((values[name] for name in names[1:]), start=values[names[0]]) if given is None else given
 
 
 def rod(s: Factored, values: Mapping[str, Factored]) -> FieldSystem:
@@ -246,9 +246,9 @@ def _in_the_plane(bending: FieldTheory, along: FieldTheory) -> FieldTheory:
             for row, line in zip(system.states, system.matrix, strict=True)
             for column, x in zip(system.states, line, strict=True)
         }
-        own = system_of(FRAME_STATES, entries, zero)
-        axes = Axes(own, *(values[name] for name in ("cos", "sin", "cos_cos", "cos_sin")))
-        return FieldSystem(("x", "y", "theta", "f_x", "f_y", "tau"), axes.turned(own.matrix), axes=axes)
+        straight = system_of(FRAME_STATES, entries, zero)
+        axes = Axes(straight, *(values[name] for name in ("cos", "sin", "cos_cos", "cos_sin")))
+        return FieldSystem(("x", "y", "theta", "f_x", "f_y", "tau"), axes.turned(straight.matrix), axes=axes)
 
     return frame
 
@@ -321,10 +321,10 @@ def varying_components(system: FieldSystem) -> tuple[Component, ...]:
     n, zero = len(system.states), system.matrix[0][0] * 0
     places = {(i, j) for i in range(n) for j in range(n) if not system.matrix[i][j].is_zero}
     components_found = []
-    for own in coupled_states(n, places):
-        rows = [(*(system.matrix[i][j] for j in own), *(load[i] for load in system.loads)) for i in own]
+    for states in coupled_states(n, places):
+        rows = [(*(system.matrix[i][j] for j in states), *(load[i] for load in system.loads)) for i in states]
         rows += [(zero,) * len(rows[0]) for _ in system.loads]
-        components_found.append(Component(own, Characteristic("varying", (), zero), (), (), tuple(rows)))
+        components_found.append(Component(states, Characteristic("varying", (), zero), (), (), tuple(rows)))
     return tuple(components_found)
 
 
@@ -336,18 +336,20 @@ def components(
     # that factor into such whose roots have a formula, and squares of these, give one part per factor.
     parts = []
     axes = system.axes
-    whole = system.matrix if axes is None else axes.own.matrix
-    size = len(whole)
-    places = {(i, j) for i in range(size) for j in range(size) if not whole[i][j].is_zero}
-    for own in coupled_states(size, places):
-        matrix = tuple(tuple(whole[i][j] for j in own) for i in own)
+    full = system.matrix if axes is None else axes.own.matrix
+    size = len(full)
+    places = {(i, j) for i in range(size) for j in range(size) if not full[i][j].is_zero}
+    for indices in coupled_states(size, places):
+        matrix = tuple(tuple(full[i][j] for j in indices) for i in indices)
         coefficients, adjugate = faddeev_leverrier(matrix)
         plain = Share(coefficients, 1, coefficients, adjugate)
         for share in (plain,) if settled is None else _split(plain, matrix, settled):
-            states, adjugate = own, share.adjugate
+            states, adjugate = indices, share.adjugate
             if axes is not None:
-                adjugate = tuple(axes.turned(_spread(b, own, whole[0][0] * 0, len(whole))) for b in adjugate)
-                states = tuple(range(len(whole)))
+                adjugate = tuple(
+                    axes.turned(_spread(b, indices, full[0][0] * 0, len(full))) for b in adjugate
+                )
+                states = tuple(range(len(full)))
             law, m = classify(share.factor), share.multiplicity
             parts.append(
                 Component(states, law, share.coefficients, adjugate, (), m, share is not plain, share.meets)
@@ -375,26 +377,28 @@ def _split(plain: Share, matrix: Matrix, settled: Callable[[Factored], Factored]
 
 def _spread(matrix: Matrix, states: Sequence[int], zero: Factored, size: int) -> Matrix:
     """Return the matrix of a part as one of all states."""
-    place = {state: i for i, state in enumerate(states)}
+    index_of = {state: i for i, state in enumerate(states)}
     return tuple(
-        tuple(matrix[place[i]][place[j]] if i in place and j in place else zero for j in range(size))
+        tuple(
+            matrix[index_of[i]][index_of[j]] if i in index_of and j in index_of else zero for j in range(size)
+        )
         for i in range(size)
     )
 
 
 def coupled_states(count: int, places: Collection[tuple[int, int]]) -> list[tuple[int, ...]]:
     """Return the connected parts of the states of a matrix that has entries at some places, in order."""
-    left, groups = list(range(count)), []
-    while left:
-        part, pending = set(), [left[0]]
+    remaining, groups = list(range(count)), []
+    while remaining:
+        part, pending = set(), [remaining[0]]
         while pending:
             i = pending.pop()
             if i in part:
                 continue
             part.add(i)
-            pending += [j for j in left if (i, j) in places or (j, i) in places]
-        groups.append(tuple(i for i in left if i in part))
-        left = [i for i in left if i not in part]
+            pending += [j for j in remaining if (i, j) in places or (j, i) in places]
+        groups.append(tuple(i for i in remaining if i in part))
+        remaining = [i for i in remaining if i not in part]
     return groups
 
 

@@ -71,8 +71,8 @@ def factors(coefficients: Sequence[Factored]) -> list[tuple[tuple[Factored, ...]
             powers = by_powers(wide, part, position)
             if (degree := max(powers)) > 0:
                 plain = {k: ring.taken_over(c, wide.names) for k, c in powers.items()}
-                own = (_quotient(ring, plain.get(k), plain[degree]) for k in range(degree))
-                parts.append((tuple(own), times * exponent))
+                monic = (_quotient(ring, plain.get(k), plain[degree]) for k in range(degree))
+                parts.append((tuple(monic), times * exponent))
     return parts
 
 
@@ -115,19 +115,19 @@ def shares(
             power = _multiplied(power, [*p, one])
         powers.append(power)
     result = []
-    for n, ((p, m), own) in enumerate(zip(factors_found, powers, strict=True)):
+    for n, ((p, m), modulus) in enumerate(zip(factors_found, powers, strict=True)):
         other = [one]
         for k, power in enumerate(powers):
-            other = other if k == n else _remainder(_multiplied(other, power), own)
-        inverse = _inverse(other, own)
+            other = other if k == n else _remainder(_multiplied(other, power), modulus)
+        inverse = _inverse(other, modulus)
         if inverse is None:
             return None
-        matrices = _reduced(adjugate, inverse, own)
+        matrices = _reduced(adjugate, inverse, modulus)
         meets = _poles(matrices, known) if len(factors_found) > 1 else []
         if any(degree_in(f, 0) and 1 not in map(int, f.degrees()) for f in meets):
             return None
         meeting = tuple(Factored.polynomial(one.ring, f) for f in meets)
-        result.append(Share(p, m, tuple(own[:-1]), matrices, meeting))
+        result.append(Share(p, m, tuple(modulus[:-1]), matrices, meeting))
     return tuple(result)
 
 
@@ -152,14 +152,14 @@ def _multiplied(left: Row, right: Row) -> Row:
 
 def _remainder(polynomial: Row, divisor: Row) -> Row:
     """Return the remainder of a division by a monic polynomial, as many coefficients as that has roots."""
-    degree, left = len(divisor) - 1, list(polynomial)
-    for k in range(len(left) - 1, degree - 1, -1):
-        top = left.pop()
+    degree, remaining = len(divisor) - 1, list(polynomial)
+    for k in range(len(remaining) - 1, degree - 1, -1):
+        top = remaining.pop()
         if not top.is_zero:
             for j, c in enumerate(divisor[:-1]):
                 if not c.is_zero:
-                    left[k - degree + j] = left[k - degree + j] - top * c
-    return [*map(lowest, left), *[divisor[0] * 0] * (degree - len(left))]
+                    remaining[k - degree + j] = remaining[k - degree + j] - top * c
+    return [*map(lowest, remaining), *[divisor[0] * 0] * (degree - len(remaining))]
 
 
 def _inverse(polynomial: Row, divisor: Row) -> Row | None:

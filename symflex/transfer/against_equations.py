@@ -126,13 +126,13 @@ def compare(
 
 def _points(parameters: Mapping[str, ExactValue], *, is_lumped: bool) -> Iterator[Point]:
     enclosed = {name: enclosure(value) for name, value in parameters.items()}
-    whole = {
+    integers = {
         name: int(v.rational)
         for name, v in parameters.items()
         if not (v.pi_power or v.is_imaginary) and v.rational.denominator == 1
     }
     for s in WHOLE if is_lumped else ():
-        yield Point(partial(acb, s), enclosed, {**whole, LAPLACE: s})
+        yield Point(partial(acb, s), enclosed, {**integers, LAPLACE: s})
     if not is_lumped:
         yield Point(lambda: acb(ball(FREQUENCY[0]), ball(FREQUENCY[1])), enclosed)
 

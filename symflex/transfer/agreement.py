@@ -42,8 +42,8 @@ def _values(tf: TransferFunction | BoundTransferFunction, here: Point, known: Ma
         num, den = _sides(closed, here, known)
         values.append(num / den)
     if not tf.is_rational:
-        whole, num, den = _with_kernels(tf, here, known)
-        values += [whole, num / den]
+        ratio, num, den = _with_kernels(tf, here, known)
+        values += [ratio, num / den]
     elif not isinstance(tf, TransferFunction) or tf.reduced is not None:
         values.append(GeneratorValues(dict(known), here.whole)(tf.ratio))
     if not isinstance(tf, TransferFunction) and tf.is_rational:
@@ -54,13 +54,13 @@ def _values(tf: TransferFunction | BoundTransferFunction, here: Point, known: Ma
 def _determinant(tf: TransferFunction | BoundTransferFunction, here: Point, known: Mapping[str, acb]) -> acb:
     """Return the denominator times what cancelled from it."""
     number, closed = GeneratorValues(dict(known), here.whole), _closed(tf)
-    left = number(tf.den) if closed is None else _sides(closed, here, known)[1]
+    determinant = number(tf.den) if closed is None else _sides(closed, here, known)[1]
     if not tf.hidden:
-        return left  # nothing is opened for the names of its ring
+        return determinant  # nothing is opened for the names of its ring
     ring = tf.ring if isinstance(tf, TransferFunction) else tf.ratio.ring
     for hidden in tf.hidden:
-        left = left * number.polynomial(hidden.polynomial, ring.names) ** hidden.multiplicity
-    return left
+        determinant = determinant * number.polynomial(hidden.polynomial, ring.names) ** hidden.multiplicity
+    return determinant
 
 
 def _closed(tf: TransferFunction | BoundTransferFunction) -> ClosedForm | None:
@@ -68,10 +68,10 @@ def _closed(tf: TransferFunction | BoundTransferFunction) -> ClosedForm | None:
 
 
 def _sides(closed: ClosedForm, here: Point, known: Mapping[str, acb]) -> tuple[acb, acb]:
-    number = GeneratorValues(dict(known), whole := dict(here.whole))
-    for name, opened in closed.closure.sums if whole else ():
+    number = GeneratorValues(dict(known), integers := dict(here.whole))
+    for name, opened in closed.closure.sums if integers else ():
         if (integer := number.integer(opened, closed.closure.base.names)) is not None:
-            whole[name] = int(integer)
+            integers[name] = int(integer)
     return closed.sides(number.values, number.polynomial)
 
 
@@ -100,5 +100,5 @@ def _with_kernels(
                     columns, reach, GeneratorValues(dict(known)), along, here
                 )
             values[kernel.generator] = matrices[law, kernel.length][divmod(kernel.order, law.order)]
-    whole, above, below = (at_centre(kernels.value(x, values)) for x in (tf.ratio, tf.num, tf.den))
-    return whole, above, below
+    ratio, above, below = (at_centre(kernels.value(x, values)) for x in (tf.ratio, tf.num, tf.den))
+    return ratio, above, below

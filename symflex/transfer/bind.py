@@ -169,9 +169,9 @@ def with_waves(bound: BoundTransferFunction) -> BoundTransferFunction | None:
     if source is None or not bound.is_of_model:
         return None
     known = {p.name for p in source.model.parameters}
-    whole = bind(source, {name: value for name, value in bound.values if name in known})
+    uncut = bind(source, {name: value for name, value in bound.values if name in known})
     # Derived with numbers, it may be written without kernels again.
-    return whole if whole.kernels else with_waves(whole)
+    return uncut if uncut.kernels else with_waves(uncut)
 
 
 def _vanishing(what: str) -> ModelError:
@@ -261,8 +261,8 @@ def _derived_with_numbers(
     if derived.is_mixed:
         nameless = assemble(numeric, nested_transfer, is_nameless=True)
         derived = derive(nameless, tf.output.name, tf.input.name)
-    left = {name: value for name, value in values if name in symbolic and not value.is_imaginary}
-    return replace(bind(derived, left), values=values, symbolic=tf)
+    remaining = {name: value for name, value in values if name in symbolic and not value.is_imaginary}
+    return replace(bind(derived, remaining), values=values, symbolic=tf)
 
 
 def _derived_or_refused(
@@ -326,8 +326,8 @@ class _Substitution:
                     powers[key] = value.rational**e
                 number *= powers[key]
                 exponents[pi] += value.pi_power * e
-            place = tuple(exponents)
-            collected[place] = collected.get(place, Fraction(0)) + number
+            monomial_key = tuple(exponents)
+            collected[monomial_key] = collected.get(monomial_key, Fraction(0)) + number
         return self.radicals.reduced(self._clear(collected, pi))
 
     def apply_factored(self, value: Factored) -> Factored:

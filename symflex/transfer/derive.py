@@ -298,12 +298,12 @@ class _CramerQuotients:
         )
         kernels = {k.generator for k in table.kernels}
         factors, parts = self._hidden(cancelled, table), (above, below) if table else None
-        whole = self._made(output, given, None, ratio, factors, table, parts)
+        made = self._made(output, given, None, ratio, factors, table, parts)
         if not ratio.ring.used_in(f for f, _ in ratio.factors).isdisjoint(kernels):
-            return whole
-        hides_waves = not ratio.ring.used_in(h.polynomial for h in whole.hidden).isdisjoint(kernels)
+            return made
+        hides_waves = not ratio.ring.used_in(h.polynomial for h in made.hidden).isdisjoint(kernels)
         ratio, cancelled = (self._without_kernels(v) for v in (ratio, cancelled))
-        with_waves = whole if hides_waves else None
+        with_waves = made if hides_waves else None
         return self._made(output, given, None, ratio, self._hidden(cancelled), with_waves=with_waves)
 
     def _without_kernels(self, value: Factored) -> Factored:

@@ -223,8 +223,8 @@ def _relations(
         terms += [(v, reached[i, size + k]) for k, v in enumerate(part.loads[: len(loads)])]
         for variable, value in terms:
             if variable is not None and variable in places:
-                place = places[variable]
-                row[place] = row[place] + value if place in row else value
+                column = places[variable]
+                row[column] = row[column] + value if column in row else value
         rows.append(row)
     return rows
 
@@ -247,8 +247,8 @@ def carried(
     if any(_holds(value, along) for value in entries.values()):
         return _stepped(entries, size, number(reach[0]), length, _AlongX(number, along, point))
     matrix = acb_mat(size, size)
-    for place, value in entries.items():
-        matrix[place] = number(value) * length
+    for index, value in entries.items():
+        matrix[index] = number(value) * length
     return matrix.exp()
 
 
@@ -290,10 +290,10 @@ class _AlongX:
 
 
 def _power(base: acb_series, exponent: Expression) -> acb_series:
-    whole = integer_exponent(exponent)
-    if whole is None:
+    integer = integer_exponent(exponent)
+    if integer is None:
         raise NotFollowedError
-    power: acb_series = raised(base, whole)
+    power: acb_series = raised(base, integer)
     return power
 
 
@@ -326,7 +326,7 @@ def _stepped(
                 raise NotFollowedError
             step = min(step, 1 - done, key=lambda h: float(h.mid()))
             here = start + length * done
-            series = {place: along.series(value, here) for place, value in entries.items()}
+            series = {index: along.series(value, here) for index, value in entries.items()}
             while (across := _taylor(series, size, length * step)) is None:
                 step = step / 2
                 steps += 1

@@ -226,10 +226,10 @@ class KernelReduction:
         if reduced.num.is_zero:
             return result
         for factor in self._vanishing:
-            whole = OriginSeries(self.ring, self.table, factor).order(determinant)
-            left = OriginSeries(self.ring, reduced.table, factor).order(reduced.den)
-            if whole is not None and left is not None and whole > left:
-                result = result * Factored.polynomial(self.ring, factor) ** (whole - left)
+            full_order = OriginSeries(self.ring, self.table, factor).order(determinant)
+            reduced_order = OriginSeries(self.ring, reduced.table, factor).order(reduced.den)
+            if full_order is not None and reduced_order is not None and full_order > reduced_order:
+                result = result * Factored.polynomial(self.ring, factor) ** (full_order - reduced_order)
         return result
 
     @cached_property
@@ -282,12 +282,12 @@ class KernelReduction:
                     value = value * (made / side) ** exponent
             for f, _ in value.filter(is_of_waves).factors:
                 divisor, times = Factored.polynomial(self.ring, f), self._conjugates(f, law)
-                whole = self.normal.reduce((divisor * times).expand())
-                if not any(self._has_waves(g) for g, _ in whole.factors):
-                    parts.append((divisor, times, whole))
-            for divisor, times, whole in parts:
-                if whole.numerator().factors:
-                    divided = partial(self._divided, divisor, times, whole)
+                product = self.normal.reduce((divisor * times).expand())
+                if not any(self._has_waves(g) for g, _ in product.factors):
+                    parts.append((divisor, times, product))
+            for divisor, times, product in parts:
+                if product.numerator().factors:
+                    divided = partial(self._divided, divisor, times, product)
                     value = value.map_factors(self.ring, divided)
             # What vanishes where they meet, the split's square over powers of s, say, may face the split.
             largest = max((f for f, _ in meets.numerator().factors), key=len, default=None)
@@ -321,16 +321,16 @@ class KernelReduction:
                 result = result * Factored.polynomial(self.ring, conjugate)
         return result
 
-    def _divided(self, divisor: Factored, times: Factored, whole: Factored, factor: fmpz_mpoly) -> Factored:
+    def _divided(self, divisor: Factored, times: Factored, product: Factored, factor: fmpz_mpoly) -> Factored:
         """Return a factor with the divisor ``whole/times`` set apart; a power of s may be left below."""
         multiplied = prod((f**e for f, e in times.factors), start=factor)
-        rest = _split_contents(self.normal.reduce(multiplied), self._kernel_content) / whole
+        quotient = _split_contents(self.normal.reduce(multiplied), self._kernel_content) / product
         s = self.ring.context.gen(0)
-        lacking = [f for f, e in rest.factors if e < 0 and whole.exponent_of(f) > 0]
-        has_others = any(f != s and int(f.degrees()[0]) for f, _ in whole.numerator().factors)
+        lacking = [f for f, e in quotient.factors if e < 0 and product.exponent_of(f) > 0]
+        has_others = any(f != s and int(f.degrees()[0]) for f, _ in product.numerator().factors)
         if lacking and not (lacking == [s] and has_others):
             return Factored.polynomial(self.ring, factor)
-        return divisor * rest.map_factors(self.ring, partial(self._divided, divisor, times, whole))
+        return divisor * quotient.map_factors(self.ring, partial(self._divided, divisor, times, product))
 
     def _modes(self, value: Factored) -> Factored:
         """Return factors that are modes: not of wavenumbers, poles of fields, or exponentials."""
@@ -348,9 +348,11 @@ class KernelReduction:
 
         result = Factored.number(self.ring, 1)
         for factor, exponent in value.filter(is_mode).factors:
-            rest = factor if self.has_kernels(factor) else _without(factor, (*singular, *self._vanishing))
-            if not rest.is_constant():
-                result = result * Factored.polynomial(self.ring, rest) ** exponent
+            remaining = (
+                factor if self.has_kernels(factor) else _without(factor, (*singular, *self._vanishing))
+            )
+            if not remaining.is_constant():
+                result = result * Factored.polynomial(self.ring, remaining) ** exponent
         return result
 
     def _in_exponentials(self, value: Factored) -> Factored:
@@ -373,14 +375,14 @@ class KernelReduction:
         vanishing = Vanishing(self.ring, table, self._solutions)
         one = Factored.number(self.ring, 1)
         above, below = [one], [one]
-        rest = Factored.number(self.ring, ratio.unit)
+        remaining = Factored.number(self.ring, ratio.unit)
         splits = {d: self._split(d) for d in table.dispersions if d.kind == "pair"}
         meets = [value for d in table.dispersions for value in d.meets]
         meetings = [f for f in self._vanishing if any(value.exponent_of(f) for value in meets)]
         series = [(f, OriginSeries(self.ring, table, f)) for f in meetings]
         for factor, exponent in ratio.factors:
             if not self.has_kernels(factor):
-                rest = rest * Factored(self.ring, Fraction(1), ((factor, exponent),))
+                remaining = remaining * Factored(self.ring, Fraction(1), ((factor, exponent),))
                 continue
             orders = self._orders(vanishing, factor, table, splits)
             for meeting, near in series:
@@ -388,9 +390,9 @@ class KernelReduction:
                 orders = orders * Factored.polynomial(self.ring, meeting) ** order
             piece = Factored(self.ring, Fraction(1), ((factor, abs(exponent)),))
             (above if exponent > 0 else below).append(piece / orders ** abs(exponent))
-            rest = rest * orders**exponent
-        rest = self._whole(_merge_splits(rest, splits.values()), table, splits)
-        num, den = prod(above, start=rest.numerator()), prod(below, start=rest.denominator())
+            remaining = remaining * orders**exponent
+        remaining = self._whole(_merge_splits(remaining, splits.values()), table, splits)
+        num, den = prod(above, start=remaining.numerator()), prod(below, start=remaining.denominator())
         return self._apart_at_origin(num, den, table)
 
     def _apart_at_origin(self, num: Factored, den: Factored, table: KernelTable) -> tuple[Factored, Factored]:
@@ -428,22 +430,24 @@ class KernelReduction:
                 result = result * (first * second) ** at_zero * splits[dispersion] ** meeting
         return result
 
-    def _whole(self, rest: Factored, table: KernelTable, splits: dict[Dispersion, Factored]) -> Factored:
+    def _whole(self, remaining: Factored, table: KernelTable, splits: dict[Dispersion, Factored]) -> Factored:
         """Return a product of wavenumber powers as a rational function of s."""
-        rest = self.normal.balance(rest)
+        remaining = self.normal.balance(remaining)
         for dispersion in table.dispersions:
             if dispersion.kind != "pair":
                 continue
             first, second = (Factored.generator(self.ring, w) for w in dispersion.wavenumbers)
-            power, other = (rest.exponent_of(self.ring.generator(w)) for w in dispersion.wavenumbers)
+            power, other = (remaining.exponent_of(self.ring.generator(w)) for w in dispersion.wavenumbers)
             split = splits[dispersion]
             ((polynomial, _),) = split.factors
-            meeting = rest.exponent_of(polynomial)
+            meeting = remaining.exponent_of(polynomial)
             if power and power == other and power % 2 == 0:
-                rest = rest / (first * second) ** power * dispersion.characteristic[0] ** (power // 2)
+                remaining = (
+                    remaining / (first * second) ** power * dispersion.characteristic[0] ** (power // 2)
+                )
             if meeting and meeting % 2 == 0:
-                rest = rest / split**meeting * dispersion.discriminant ** (meeting // 2)
-        return rest
+                remaining = remaining / split**meeting * dispersion.discriminant ** (meeting // 2)
+        return remaining
 
 
 def opened(num: Factored, den: Factored, table: KernelTable) -> tuple[Factored, Factored]:
@@ -458,8 +462,8 @@ def _with_fewer_waves(value: Factored, table: KernelTable) -> Factored:
     ring, normal = value.ring, NormalForm(value.ring, table)
     waves, kernels = frozenset(table.wavenumbers), frozenset(k.generator for k in table.kernels)
     used = [(f, e, ring.used_in([f])) for f, e in value.factors]
-    own = [(f, e) for f, e, names in used if names & waves and not names & kernels]
-    for (f, e), (g, d) in combinations(own, 2):
+    wave_factors = [(f, e) for f, e, names in used if names & waves and not names & kernels]
+    for (f, e), (g, d) in combinations(wave_factors, 2):
         joined = normal.reduce(f * g)
         if e == d and ring.used_in(p for p, _ in joined.factors).isdisjoint(waves):
             pair = Factored.polynomial(ring, f) * Factored.polynomial(ring, g)
@@ -471,10 +475,10 @@ def _split_contents(value: Factored, split: Split) -> Factored:
     """Return a value with every factor free of kernels set apart."""
     result = Factored.number(value.ring, value.unit)
     for factor, exponent in value.factors:
-        content, rest = split(factor)
+        content, primitive = split(factor)
         number, pieces = irreducible_factors(content)
         result = result * Fraction(number) ** exponent
-        for piece, power in (*pieces, (rest, 1)):
+        for piece, power in (*pieces, (primitive, 1)):
             result = result * Factored.polynomial(value.ring, piece) ** (exponent * power)
     return result
 

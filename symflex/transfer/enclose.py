@@ -83,9 +83,14 @@ def enclose(expression: Expression, values: Mapping[str, Callable[[], arb]]) -> 
 
 def _enclose(expression: Expression, values: Mapping[str, Callable[[], arb]]) -> arb:
     def power(base: arb, exponent: Expression) -> arb:
-        whole = rational_value(exponent, {})
-        if base.contains(0) and whole is not None and whole.denominator == 1 and 0 < whole <= MOST_FACTORS:
-            return prod([base] * int(whole), start=arb(1))
+        rational = rational_value(exponent, {})
+        if (
+            base.contains(0)
+            and rational is not None
+            and rational.denominator == 1
+            and 0 < rational <= MOST_FACTORS
+        ):
+            return prod([base] * int(rational), start=arb(1))
         return base ** _enclose(exponent, values)
 
     return fold(

@@ -270,7 +270,10 @@ def fundamental_functions(coefficients: Sequence[Value], length: Value) -> tuple
     block = acb_mat(n * terms, n * terms)
     for k in range(terms):
         known = range(max(0, k + 1 - len(reach)), k + 1)
-        steep = [sum((own[i] * reach[k - i] for i in known if i < len(own)), ZERO) for own in rows]
+        steep = [
+            sum((series_row[i] * reach[k - i] for i in known if i < len(series_row)), ZERO)
+            for series_row in rows
+        ]
         for start in range(terms - k):
             row, column = n * start, n * (start + k)
             for i in range(n - 1 if k < len(reach) else 0):
@@ -356,14 +359,14 @@ def _roots(coefficients: Sequence[Value]) -> list[Value] | None:
 def _isolated(polynomial: acb_poly, slope: acb_poly) -> list[acb] | None:
     """Return disjoint boxes, each of which holds one root of every polynomial in the ball."""
     middle = acb_poly([c.mid() for c in polynomial.coeffs()])
-    own = middle.derivative()
+    derivative = middle.derivative()
     try:
         discs = middle.roots()
-        exact = [_refined(middle, own, disc) for disc in discs]
+        exact = [_refined(middle, derivative, disc) for disc in discs]
         gap = min((abs(a.mid() - b.mid()) for i, a in enumerate(discs) for b in discs[:i]), default=arb(1))
         if not all(root.rad() < gap / FINER for root in exact):
             # Separated, but too roughly for Newton's method.
-            exact = [_refined(middle, own, disc) for disc in middle.roots(tol=gap.mid() / FINER)]
+            exact = [_refined(middle, derivative, disc) for disc in middle.roots(tol=gap.mid() / FINER)]
     except ValueError:
         return None
     boxes = []

@@ -101,9 +101,9 @@ class EquationsAt:
     def value(self, output: str, source: str, s: acb) -> acb:
         """Return the value of a transfer function on a ball of s; UndecidedError where A may be singular."""
         number, entries, size = self.on(s), self.entries(output, source), len(self.equations.unknowns)
-        left = eliminate([{j: number(c) for j, c in row.items()} for row in entries], size).rows[size]
+        row_left = eliminate([{j: number(c) for j, c in row.items()} for row in entries], size).rows[size]
         divisor = next(o for o in self.equations.outputs if o.name == output).divisor
-        return acb(left.get(size, ZERO) / number(divisor))
+        return acb(row_left.get(size, ZERO) / number(divisor))
 
     def moving(self, along: str) -> frozenset[str]:
         """Return the names whose values depend on s or a parameter, that itself among them."""

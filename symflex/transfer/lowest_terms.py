@@ -142,9 +142,9 @@ class DeterminantsOnLine:
         self._images = [known.get(name) for name in closure.ring.names]
         reduced, rows = determinants.reduced, determinants.minors.rows
         entries = [self._row(row) for row in (*rows, *reduced.outputs)]
-        whole = [row or {} for row in entries]
-        values = [{c: image for c, (image, _) in row.items()} for row in whole]
-        degrees = [{c: degree for c, (_, degree) in row.items()} for row in whole]
+        sparse_rows = [row or {} for row in entries]
+        values = [{c: image for c, (image, _) in row.items()} for row in sparse_rows]
+        degrees = [{c: degree for c, (_, degree) in row.items()} for row in sparse_rows]
         self._values = Minors(tuple(values[: len(rows)]), ring=LINE)
         self._degrees = DegreeBounds(tuple(degrees[: len(rows)]))
         self._outputs = list(zip(values[len(rows) :], degrees[len(rows) :], strict=True))

@@ -38,8 +38,8 @@ class _Naming:
         """Return the name of a value in a law; zero, and what depends on s, stay what they are."""
         if depends_on_s(value, self.varying) or value == Number(Fraction(0)):
             return value
-        own = Definition(f"coefficient[{len(self.found)}]", value)
-        return Name(self.found.setdefault((law, key), own).name)
+        definition = Definition(f"coefficient[{len(self.found)}]", value)
+        return Name(self.found.setdefault((law, key), definition).name)
 
     def element(self, use: PlacedElement, law: Hashable) -> PlacedElement:
         """Return a line element with names for its values."""
@@ -70,8 +70,12 @@ class _Naming:
                 return Sum(tuple(map(put, terms)))
             case Product(factors):
                 constant = [f for f in factors if self._is_constant(f)]
-                rest = [put(f) for f in factors if not self._is_constant(f)]
-                return Product((put(Product(tuple(constant))), *rest)) if constant else Product(tuple(rest))
+                varying = [put(f) for f in factors if not self._is_constant(f)]
+                return (
+                    Product((put(Product(tuple(constant))), *varying))
+                    if constant
+                    else Product(tuple(varying))
+                )
             case Quotient(numerator, denominator):
                 return Quotient(put(numerator), put(denominator))
         return expression
@@ -102,8 +106,8 @@ def in_order_of_use(model: Model) -> tuple[str, ...]:
         d.name: dict.fromkeys(n.name for n in names(d.expression) if isinstance(n, Name))
         for d in model.definitions
     }
-    for name, own in inside.items():
-        inside[name] = dict.fromkeys(n for each in own for n in inside.get(each, {each: None}))
+    for name, names_used in inside.items():
+        inside[name] = dict.fromkeys(n for each in names_used for n in inside.get(each, {each: None}))
     written = (n.name for e in used if e is not None for n in names(e) if isinstance(n, Name))
     ordered = dict.fromkeys(n for each in written for n in inside.get(each, (each,)))
     declared = {p.name: None for p in model.parameters}

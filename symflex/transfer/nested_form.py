@@ -376,7 +376,7 @@ def _values(
     def generator(position: int) -> Any:  # noqa: ANN401 (whatever the values are)
         if position not in wave_of:
             return known[names[position]]
-        waves, place = wave_of[position]
+        waves, index = wave_of[position]
         if waves not in functions:
             # Fundamental functions, in the order of their generators
             arguments = [_complex(values[i]) for i in waves.arguments]
@@ -386,7 +386,7 @@ def _values(
             orders = [order for _, order in waves.generators]
             plain = fundamental_functions(coefficients, length) if any(n >= 0 for n in orders) else ()
             functions[waves] = tuple(plain[n] if n >= 0 else (-shift * length).exp() for n in orders)
-        return functions[waves][place]
+        return functions[waves][index]
 
     tf.program.values(tf.operations, name=generator, number=number, quotient=_quotient, known=values)
     return values[tf.num], values[tf.den]

@@ -139,17 +139,17 @@ class Probes:
     def along(self, value: Factored, x: Sequence[acb], bits: int, chosen: Sequence[int]) -> list[acb]:
         """Return balls around a function of s and the coordinate along a member, each point at its own x."""
         values = []
-        for i, place in zip(chosen, x, strict=True):
+        for i, position in zip(chosen, x, strict=True):
             setting, (re, im) = self.points[i]
             assert setting.bound is not None
             with precision(bits):
                 kernels = setting.bound.kernel_values(is_along=False)
                 known = kernels.generators_at(acb(ball(re), ball(im)))
-                known[COORDINATE] = place
+                known[COORDINATE] = position
                 for name, function in setting.bound.along.items():
-                    own = {n: [acb(enclosure(v)())] for n, v in setting.values.items()}
-                    own |= {COORDINATE: [place], "pi": [acb(arb.pi())]}
-                    known[name] = principal_values(function, 1, own.__getitem__)[0]
+                    local_values = {n: [acb(enclosure(v)())] for n, v in setting.values.items()}
+                    local_values |= {COORDINATE: [position], "pi": [acb(arb.pi())]}
+                    known[name] = principal_values(function, 1, local_values.__getitem__)[0]
                 values.append(evaluated(value, known.__getitem__, acb(1)))
         return values
 
@@ -249,9 +249,9 @@ class _Draw:
         bound = BoundTransferFunction(tf, exact, tf.ratio, (), tf.kernels)
         if any(d.matrix for d in tf.kernels.dispersions):
             return _tapered(bound, is_solved=self.is_solved), bound
-        own = bound.enclosed_part(tf.ratio, FIRST_BITS).kernels
-        numbers = own.generators_at(acb(1))
-        lengths = [at_centre(own.value(k.length, numbers)) for k in tf.kernels.kernels]
+        kernels = bound.enclosed_part(tf.ratio, FIRST_BITS).kernels
+        numbers = kernels.generators_at(acb(1))
+        lengths = [at_centre(kernels.value(k.length, numbers)) for k in tf.kernels.kernels]
         if not all(x.imag == 0 and x.real > 0 for x in lengths):
             return None
 

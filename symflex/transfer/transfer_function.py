@@ -217,9 +217,9 @@ class TransferFunction:
     @cached_property
     def hidden_parameters(self) -> tuple[ModelParameter, ...]:
         """The parameters that occur in hidden factors, in declared order."""
-        whole = self.whole
-        inside = [f for v in whole.kernels.values for f, _ in v.factors] if self.with_waves else []
-        return whole.parameters_in([*(h.polynomial for h in whole.hidden), *inside])
+        uncut = self.whole
+        inside = [f for v in uncut.kernels.values for f, _ in v.factors] if self.with_waves else []
+        return uncut.parameters_in([*(h.polynomial for h in uncut.hidden), *inside])
 
     def parameters_in(self, polynomials: Sequence[fmpz_mpoly]) -> tuple[ModelParameter, ...]:
         """Return the parameters that polynomials over the function's ring hold."""

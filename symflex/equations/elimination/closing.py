@@ -75,10 +75,10 @@ class Closure:
         for image, exponent in zip(self.images, content.monoms()[0], strict=True):
             if exponent:
                 result = result * Factored.polynomial(self.base, image) ** int(exponent)
-        rest = polynomial / content
-        if rest.is_constant():
-            return result * int(rest.leading_coefficient())
-        opened = self.base.compose(rest, self.images, TERM_LIMIT, MEMORY_LIMIT)
+        primitive = polynomial / content
+        if primitive.is_constant():
+            return result * int(primitive.leading_coefficient())
+        opened = self.base.compose(primitive, self.images, TERM_LIMIT, MEMORY_LIMIT)
         return result * Factored.polynomial(self.base, opened)
 
     def opened_length(self, polynomial: fmpz_mpoly) -> int | None:

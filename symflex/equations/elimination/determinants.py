@@ -131,8 +131,8 @@ class LaplaceExpansion(ABC, Generic[Entry, Value]):
 
     def bordered(self, top: Mapping[int, Entry], columns: int) -> Value:
         """Return the determinant with one more row on top."""
-        for left in self._left(top, columns):
-            self._find(left)
+        for remaining in self._left(top, columns):
+            self._find(remaining)
         return self._expand(top, 0, columns)
 
     def _minor(self, row: int, columns: int) -> Value:
@@ -151,7 +151,7 @@ class LaplaceExpansion(ABC, Generic[Entry, Value]):
             count += len(wanted[-1])
             if count > MINOR_LIMIT:
                 raise _too_large("the determinant has too many minors or terms")
-            below = {left for each in wanted[-1] for left in self._left(entries, each)}
+            below = {remaining for each in wanted[-1] for remaining in self._left(entries, each)}
             wanted.append(below.difference(self._known))
         for row in reversed(range(len(self.rows))):
             for each in wanted[row]:
@@ -228,19 +228,19 @@ def expansion_order(rows: tuple[SparseRow, ...], columns: tuple[int, ...]) -> tu
             users.setdefault(c, []).append(i)
     fresh = [len(p) for p in patterns]
     seen: set[int] = set()
-    left = set(range(len(rows)))
+    remaining = set(range(len(rows)))
     touched: set[int] = set()
     order: list[int] = []
-    while left:
-        candidates = touched or left
+    while remaining:
+        candidates = touched or remaining
         best = min(candidates, key=lambda i: (fresh[i], i))
         order.append(best)
-        left.discard(best)
+        remaining.discard(best)
         touched.discard(best)
         for c in patterns[best] - seen:
             for i in users[c]:
                 fresh[i] -= 1
-                if i in left:
+                if i in remaining:
                     touched.add(i)
         seen |= patterns[best]
     return tuple(order)

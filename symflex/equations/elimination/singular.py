@@ -82,8 +82,8 @@ def explain_singular(equations: Equations) -> ModelError:
         problem = Diagnostic("SF301", message, _place(equations, nodes[0]), hint)
     else:
         names = listed([f"'{v}'" for v in open_unknowns])
-        place = _place(equations, open_unknowns[0]) if open_unknowns else None
-        problem = Diagnostic("SF304", f"nothing determines {names}", place)
+        location = _place(equations, open_unknowns[0]) if open_unknowns else None
+        problem = Diagnostic("SF304", f"nothing determines {names}", location)
     return ModelError(problem)
 
 
@@ -276,15 +276,15 @@ def unreached(equations: Equations) -> tuple[Diagnostic, ...]:
     model = equations.model
     prime, value = numbers_at_random(equations)
     forms = [row.form for row in equations.rows]
-    whole = matrix_of(forms, equations.unknowns, prime, value)
+    matrix = matrix_of(forms, equations.unknowns, prime, value)
     seen = matrix_of([o.form for o in equations.outputs], equations.unknowns, prime, value)
     through = matrix_of([o.form for o in equations.outputs], equations.inputs, prime, value)
     if equations.unknowns:
-        driven = whole.solve(matrix_of(forms, equations.inputs, prime, value))
+        driven = matrix.solve(matrix_of(forms, equations.inputs, prime, value))
         through = through - seen * driven
     diagnostics = list(_zero_ends(equations, through))
     if equations.unknowns and any(int(x) for x in through.entries()):
-        felt = whole.transpose().solve(seen.transpose())
+        felt = matrix.transpose().solve(seen.transpose())
         diagnostics += _idle_elements(equations, driven, felt)
     warned = {d.span for d in model.warnings}
     return tuple(d for d in diagnostics if d.span not in warned)
@@ -318,7 +318,7 @@ def _idle_elements(equations: Equations, driven: nmod_mat, felt: nmod_mat) -> It
     """
     model = equations.model
     read = {n.owner for _, e in model.expressions() for n in names(e) if isinstance(n, Attribute)}
-    place = {v: i for i, v in enumerate(equations.unknowns)}
+    index_of = {v: i for i, v in enumerate(equations.unknowns)}
     warned = {d.span for d in model.warnings}
     loose = {n.name for n in model.nodes if n.span in warned}
     balance = {r.about: i for i, r in enumerate(equations.rows) if r.role == "balance"}
@@ -328,7 +328,7 @@ def _idle_elements(equations: Equations, driven: nmod_mat, felt: nmod_mat) -> It
         if not ends or any(v.owner in loose for v in ends):
             continue
         columns = range(len(model.inputs))
-        moved = [[int(driven[place[v], j]) for j in columns] for v in ends]
+        moved = [[int(driven[index_of[v], j]) for j in columns] for v in ends]
         is_branch = len(ends) > 1 and not isinstance(use.element, LineElement)
         if moved[0] == moved[1] if is_branch else not any(map(any, moved)):
             idle.setdefault("no input strains" if is_branch else "no input moves", []).append(use)

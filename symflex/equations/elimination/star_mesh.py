@@ -216,14 +216,14 @@ class _Network:
     ) -> tuple[_NetworkRow, dict[str, list[int]]]:
         """Return a row, and what inputs contribute to it."""
         bench, columns = self.bench, self.columns
-        own = columns.get((about.kind, about.owner, about.component), NO_UNKNOWN)
-        row = _NetworkRow({}, own, is_balance=is_balance)
+        own_column = columns.get((about.kind, about.owner, about.component), NO_UNKNOWN)
+        row = _NetworkRow({}, own_column, is_balance=is_balance)
         loads: dict[str, list[int]] = {}
         diagonal: list[int] = []
         for variable, coefficient in form.terms:
             # Variables as keys would cost as much as all the rest.
             column = columns.get((variable.kind, variable.owner, variable.component), -1)
-            if column == own:
+            if column == own_column:
                 diagonal.append(bench.factored(coefficient))
             elif column < 0:
                 loads.setdefault(variable.owner, []).append(bench.factored(coefficient, -1))
@@ -232,27 +232,27 @@ class _Network:
         ground = self._ground(row, diagonal) if is_balance else None
         if ground is None:
             if diagonal:
-                row.entries[own] = [bench.negate(d) for d in diagonal]
+                row.entries[own_column] = [bench.negate(d) for d in diagonal]
         else:
-            row.implicit, row.ground = own, ground
+            row.implicit, row.ground = own_column, ground
         return row, loads
 
     def _ground(self, row: _NetworkRow, diagonal: list[int]) -> list[int] | None:
         """Return what joins a node to ground: its own terms but for those of branches to other nodes."""
-        left: dict[int, int] = {}
+        nonzero: dict[int, int] = {}
         for step in diagonal:
-            left[step] = left.get(step, 0) + 1
+            nonzero[step] = nonzero.get(step, 0) + 1
         kind = self.classes[row.own]
         for column, steps in row.entries.items():
             if self.classes[column] == kind:
                 for step in steps:
-                    if not left.get(step):
+                    if not nonzero.get(step):
                         return None
-                    left[step] -= 1
+                    nonzero[step] -= 1
         ground: list[int] = []
         for step in diagonal:
-            if left[step]:
-                left[step] -= 1
+            if nonzero[step]:
+                nonzero[step] -= 1
                 ground.append(step)
         return ground
 
@@ -287,14 +287,14 @@ class _StarMesh:
         self.solved: list[_SolvedUnknown] = []
         loaded = 0
         for i, (row, loads) in enumerate(network.rows):
-            own = row if is_only else row.copy()
-            own.load = list(loads.get(source, ())) if loads else []
-            loaded += bool(own.load)
-            for column in own.entries:
+            copied = row if is_only else row.copy()
+            copied.load = list(loads.get(source, ())) if loads else []
+            loaded += bool(copied.load)
+            for column in copied.entries:
                 self.users[column][i] = None
-            self.rows.append(own)
-            if own.implicit >= 0:
-                self.hidden[own.implicit] += 1
+            self.rows.append(copied)
+            if copied.implicit >= 0:
+                self.hidden[copied.implicit] += 1
         self.keeps_last = loaded <= KEPT_LAST
         self._eliminate()
 
@@ -303,10 +303,10 @@ class _StarMesh:
     def _cost(self, row: _NetworkRow) -> int:
         """Return how many entries the elimination of a row can make at most."""
         entries, users, hidden = row.entries, self.users, self.hidden
-        own = row.own
+        column = row.own
         width = len(entries) + (row.implicit >= 0)
-        if row.implicit == own or own in entries:
-            return (width - 1) * (len(users[own]) + hidden[own] - 1)
+        if row.implicit == column or column in entries:
+            return (width - 1) * (len(users[column]) + hidden[column] - 1)
         counts = [len(users[c]) + hidden[c] for c in entries]
         if row.implicit >= 0:
             counts.append(len(users[row.implicit]) + hidden[row.implicit])
@@ -358,9 +358,9 @@ class _StarMesh:
             if bench.kinds[ground] > Step.NUMBER:
                 bench.roles.setdefault(ground, "Z")
             kind = classes[row.implicit]
-            whole = add([ground, *(v for c, v in values.items() if classes[c] == kind)])
-            if whole:
-                values[row.implicit] = bench.negate(whole)
+            row_sum = add([ground, *(v for c, v in values.items() if classes[c] == kind)])
+            if row_sum:
+                values[row.implicit] = bench.negate(row_sum)
         if not values:
             raise _singular(self.network.equations, [row.own])
         pivot = self._chosen(row, values)
@@ -486,7 +486,7 @@ class _StarMesh:
         kind = classes[pivot]
         self.hidden[pivot] -= 1
         entries = {c: bench.add(t) for c, t in row.entries.items()}
-        whole = bench.add([bench.add(row.ground), *(v for c, v in entries.items() if classes[c] == kind)])
+        row_sum = bench.add([bench.add(row.ground), *(v for c, v in entries.items() if classes[c] == kind)])
         row.implicit = next((c for c in values if classes[c] == kind), -1)
         if row.implicit >= 0:
             self.hidden[row.implicit] += 1
@@ -496,7 +496,7 @@ class _StarMesh:
         else:
             row.ground = []
         row.entries.pop(pivot, None)
-        return bench.negate(whole)
+        return bench.negate(row_sum)
 
     def _row_sum(self, kind: int, pivot: int, below: int, values: dict[int, int]) -> int:
         """Return the sum of a row's coefficients over the columns of a class."""

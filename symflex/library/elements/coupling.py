@@ -121,11 +121,11 @@ class Gyrator(TwoPort):
         crossed = (("from", drawn, "to", given), ("to", given, "from", drawn))
         rows = tuple(
             EquationRow(
-                own,
-                self._effort(use, port, own, denominator) + self._flow(use, other, through, -numerator),
+                driven,
+                self._effort(use, port, driven, denominator) + self._flow(use, other, through, -numerator),
                 "constraint",
             )
-            for port, own, other, through in crossed
+            for port, driven, other, through in crossed
         )
         into, out_of = LinearForm.of((given, use.one)), LinearForm.of((drawn, -use.one))
         return Stamp(
@@ -359,10 +359,10 @@ class CoupledInductors(Element):
             (second, first, use.values["L_2"] * use.s, c, d),
         )
         rows, injections = [], []
-        for own, other, inductance, start, end in windings:
-            law = LinearForm.of((own, inductance), (other, mutual), (start, -one), (end, one))
-            rows.append(EquationRow(own, law))
-            injections += [Injection(n, LinearForm.of((own, c))) for n, c in ((start, -one), (end, one))]
+        for current, other, inductance, start, end in windings:
+            law = LinearForm.of((current, inductance), (other, mutual), (start, -one), (end, one))
+            rows.append(EquationRow(current, law))
+            injections += [Injection(n, LinearForm.of((current, c))) for n, c in ((start, -one), (end, one))]
         return Stamp(
             unknowns=(first, second),
             rows=tuple(rows),
@@ -423,8 +423,8 @@ class ControlledSource(Element):
             control = LinearForm.of((felt, one))
             injections += delivered(use, "inputs", control * (-one))
             unknowns.append(felt)
-        own = difference(use, "terminals", common) if self.is_voltage else LinearForm.of((current, common))
-        law = own + control * (-gain * common)
+        effort = difference(use, "terminals", common) if self.is_voltage else LinearForm.of((current, common))
+        law = effort + control * (-gain * common)
         rows.append(EquationRow(current, law, "constraint" if self.is_voltage else "law"))
         flow = LinearForm.of((current, one))
         return Stamp(
