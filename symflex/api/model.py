@@ -935,6 +935,10 @@ class Model:
         """Return a standalone LaTeX document of the model."""
         return self._export("latex")
 
+    def export_typst(self) -> str:
+        """Return a standalone Typst document of the model."""
+        return self._export("typst")
+
     def export_sampled(
         self,
         target: str,

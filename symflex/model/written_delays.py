@@ -55,16 +55,16 @@ def with_written_delays(draft: Draft, taken: Collection[str]) -> Draft:
     }
     places += ratios.values()
     # What depends on x is no delay, unless x is a parameter.
-    along = {COORDINATE} - {p.name for p in draft.declared} - {p.name for p in draft.inherited}
+    along = {COORDINATE}.difference(draft.parameters)
     exponentials = [n for e in places for n in nodes(e) if isinstance(n, Call) and n.name == "exp"]
     opened = opened_definitions(draft) if exponentials else None
     moving = {name: e for name, e in (opened or {}).items() if names_among(e, (LAPLACE,))}
-    late_nodes = {n: written for n in exponentials if (written := _written_delay(n, moving))}
-    late_nodes = {n: written for n, written in late_nodes.items() if not names_among(written[0], along)}
+    written = {n: _written_delay(n, moving) for n in exponentials}
+    late_nodes = {n: delay for n, delay in written.items() if delay and not names_among(delay[0], along)}
     if not late_nodes:
         return draft
-    used = {n.name for e in places for n in names(e)}
-    free = (name for i in count(1) if (name := f"delay_{i}") not in taken and name not in used)
+    used = {*taken, *(n.name for e in places for n in names(e))}
+    free = (name for i in count(1) if (name := f"delay_{i}") not in used)
     spans = {time: node.span for node, (time, _) in late_nodes.items()}
     blocks = {
         time: PlacedBlock(next(free), BLOCKS["delay"], (("T", replace(time, span=span)),), span=span)
@@ -74,18 +74,9 @@ def with_written_delays(draft: Draft, taken: Collection[str]) -> Draft:
         node: product_of([gain, Name(blocks[time].name, span=node.span)])
         for node, (time, gain) in late_nodes.items()
     }
-    late: dict[str, Expression] = {}
-    bodies = {d.name: d.expression for d in draft.definitions} | ratios
-    grown = True
-    while grown:  # each may use those that were late before
-        grown = False
-        for name in [n for n in bodies if n not in late]:
-            put = substitute(replace_values(bodies[name], mapping), late)
-            if put is bodies[name]:
-                continue
-            if len(nodes(put)) > SIZE_LIMIT:
-                return draft  # which is refused where the exponentials stand
-            late[name], grown = put, True
+    late = _written_out({d.name: d.expression for d in draft.definitions} | ratios, mapping)
+    if late is None:
+        return draft  # which is refused where the exponentials stand
 
     def put_in(expression: Expression) -> Expression:
         return substitute(replace_values(expression, mapping), late)
@@ -97,6 +88,24 @@ def with_written_delays(draft: Draft, taken: Collection[str]) -> Draft:
     )
     kept = rewritten(kept, put_in)
     return replace(kept, blocks=(*kept.blocks, *blocks.values()))
+
+
+def _written_out(
+    bodies: Mapping[str, Expression], mapping: Mapping[Expression, Expression]
+) -> dict[str, Expression] | None:
+    """Return what holds a delay, written out; ``None`` where that would be too long."""
+    late: dict[str, Expression] = {}
+    grown = True
+    while grown:  # each may use those that were late before
+        grown = False
+        for name in [n for n in bodies if n not in late]:
+            put = substitute(replace_values(bodies[name], mapping), late)
+            if put is bodies[name]:
+                continue
+            if len(nodes(put)) > SIZE_LIMIT:
+                return None
+            late[name], grown = put, True
+    return late
 
 
 def _written_delay(node: Call, moving: Mapping[str, Expression]) -> tuple[Expression, Expression] | None:

@@ -15,6 +15,7 @@ import sympy
 import symflex
 from symflex import pipeline
 from symflex.api import analyses
+from symflex.codegen.exporters import EXPORTERS
 from symflex.errors import BudgetError, Diagnostic
 from symflex.print.forms.printed import RATIONAL
 from symflex.roots import Budget
@@ -515,6 +516,11 @@ def test_the_exported_numpy_module_agrees(model, tmp_path):
     space = runpy.run_path(str(tmp_path / "exported.py"))
     s = 1j * np.geomspace(0.1, 1e3, 20)
     np.testing.assert_allclose(space["X_act_over_F"](s), receptance(s), rtol=1e-13)
+
+
+def test_python_has_a_method_for_every_target(model):
+    assert all(hasattr(model, f"export_{target.replace('-', '_')}") for target in EXPORTERS)
+    assert model.export_typst().startswith("#set page")
 
 
 def test_the_exported_latex_is_a_document(model):
