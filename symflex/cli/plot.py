@@ -86,8 +86,6 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     """
     from symflex import pipeline
     from symflex.figures import FIGURES, LOOP_FIGURES, checked_font, draw, part_shown, save
-    from symflex.loops import pick_gain
-    from symflex.loops.of_model import characteristic_loop
     from symflex.print.latex import width_of
 
     if (is_over := bool(given.over) or given.kind == STABILITY) or (
@@ -125,6 +123,9 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     frame = replace(frame, at=frame.at or (figure.at if figure else ()))
     look = partial(draw, drawn, band_hz=shown, frame=frame, title=title, width_mm=width_mm, font=font)
     if gain:
+        from symflex.loops import pick_gain
+        from symflex.loops.of_model import characteristic_loop
+
         limits = gain_ends(given.limits, pick_gain(model.parameters, gain))
         limits = limits or (figure.limits if figure else None)
         drawing = look(characteristic_loop(model, gain), limits=limits, modes=given.modes)

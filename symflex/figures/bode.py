@@ -40,7 +40,6 @@ from symflex.figures.style import (
     stability_lines,
     title_lines,
 )
-from symflex.letters.limits import limits_of
 from symflex.roots import Band, PoleZeroMap
 from symflex.roots.loss_modes import NO_STABILITY
 from symflex.transfer import AnyBoundFunction
@@ -106,11 +105,8 @@ def draw_bode(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
         handles += level.plot(*curve, color=colour, linestyle=dash, label=label)
         for axes in below:
             axes.plot(response.frequency_hz, np.degrees(response.phase), color=colour, linestyle=dash)
-        for row in limits_of(bound.source).rows if canvas.frame.has_asymptotes and bound.is_rational else ():
-            if row.value and row.power is not None:
-                ends = np.array([low, high])
-                size = 20 * np.log10(abs(row.value) * (tau * ends) ** float(row.power))
-                level.plot(ends, size, color=colour, linewidth=ASYMPTOTE)
+        if canvas.frame.has_asymptotes and bound.is_rational:
+            _draw_asymptotes(level, bound, np.array([low, high]), colour)
     for unit, axes in tops.items():
         axes.set_ylim(*limits[axes])
         set_magnitude_ticks(axes)
@@ -164,6 +160,16 @@ def draw_response(response: SampledResponse, ax: AxesGiven | None = None) -> Fig
         if not given_axes:
             write_title(figure, title_lines(response.tf, COLUMN_INCHES))
     return figure
+
+
+def _draw_asymptotes(axes: Axes, bound: AnyBoundFunction, ends: npt.NDArray[np.float64], colour: str) -> None:
+    """Draw the powers of s that a function comes close to, as straight lines between two frequencies."""
+    from symflex.letters.limits import limits_of  # few figures have them
+
+    for row in limits_of(bound.source).rows:
+        if row.value and row.power is not None:
+            size = 20 * np.log10(abs(row.value) * (tau * ends) ** float(row.power))
+            axes.plot(ends, size, color=colour, linewidth=ASYMPTOTE)
 
 
 def _magnitude_limits(drawn: Sequence[tuple[SampledResponse, PoleZeroMap]], axes: Axes) -> Limits:

@@ -6,51 +6,56 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
+from importlib import import_module
+from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from symflex.analysis.modes import EnclosedModeShape
 from symflex.errors import Diagnostic, ModelError, UsageError, nearest, refused
 from symflex.figures.axes import FREE, AxesGiven, AxisLimits, Canvas, Drawing, axes_of
-from symflex.figures.bode import draw_bode
-from symflex.figures.deflection import draw_deflections
 from symflex.figures.figure import Raster, raster_of
 from symflex.figures.files import MM_PER_INCH
-from symflex.figures.in_time import draw_responses
-from symflex.figures.loops import draw_locus, draw_loop_gain, draw_nyquist
-from symflex.figures.modes import draw_modes, draw_shapes, heading
-from symflex.figures.nichols import draw_loop_phase, draw_nichols
-from symflex.figures.poles_zeros import draw_poles_zeros
-from symflex.figures.runs import panels_of
-from symflex.figures.sensitivity import draw_sensitivity
-from symflex.figures.stability import draw_stability
 from symflex.figures.style import DEFAULT_FONT, family_of, paper_style
-from symflex.loops import AnyLoop, StabilityMap
-from symflex.loops.chart import StabilityChart
-from symflex.loops.clouds import root_clouds
 from symflex.model import Model
 from symflex.options import PlotOptions, Stated, axis_ends, band_ends, frequency
 from symflex.print.latex import width_of
 from symflex.print.latex.page import checked_width
 from symflex.transfer import AnyBoundFunction
 
+if TYPE_CHECKING:
+    from symflex.analysis.modes import EnclosedModeShape
+    from symflex.loops import AnyLoop, StabilityMap
+    from symflex.loops.chart import StabilityChart
+
+
+def _later(module: str, name: str) -> Callable[..., Figure]:
+    """Return a function that draws, whose module is imported when it is asked for."""
+
+    def drawn(*arguments: object) -> Figure:
+        """Do what the function of that name in its module does."""
+        figure: Figure = getattr(import_module(f"symflex.figures.{module}"), name)(*arguments)
+        return figure
+
+    return drawn
+
+
 FIGURES: dict[str, Drawing] = {
-    "bode": draw_bode,
-    "deflection": draw_deflections,
-    "impulse": partial(draw_responses, "impulse"),
-    "modes": draw_modes,
-    "nichols": draw_nichols,
-    "nyquist": draw_nyquist,
-    "poles_zeros": draw_poles_zeros,
-    "step": partial(draw_responses, "step"),
+    "bode": _later("bode", "draw_bode"),
+    "deflection": _later("deflection", "draw_deflections"),
+    "impulse": partial(_later("in_time", "draw_responses"), "impulse"),
+    "modes": _later("modes", "draw_modes"),
+    "nichols": _later("nichols", "draw_nichols"),
+    "nyquist": _later("loops", "draw_nyquist"),
+    "poles_zeros": _later("poles_zeros", "draw_poles_zeros"),
+    "step": partial(_later("in_time", "draw_responses"), "step"),
 }
 
 LOOP_FIGURES: dict[str, Callable[[AnyLoop, Canvas], Figure]] = {
-    "locus": draw_locus,
-    "nichols": draw_loop_phase,
-    "nyquist": draw_loop_gain,
-    "sensitivity": draw_sensitivity,
+    "locus": _later("loops", "draw_locus"),
+    "nichols": _later("nichols", "draw_loop_phase"),
+    "nyquist": _later("loops", "draw_loop_gain"),
+    "sensitivity": _later("sensitivity", "draw_sensitivity"),
 }  # kinds that are drawn of a loop and its gain
 
 
@@ -80,8 +85,11 @@ def draw(
     the gain, SF902 a wrong size or number of axes; ModelError: SF402 a function is identically zero;
     UncertifiedError: SF807 curves without certified ends.
     """
-    clouds = None if spread is None else partial(root_clouds, share=spread, model=model)
-    canvas = replace(_canvas(band_hz, frame, title, width_mm, ax), clouds=clouds, gains=limits, modes=modes)
+    canvas = replace(_canvas(band_hz, frame, title, width_mm, ax), gains=limits, modes=modes)
+    if spread is not None:
+        from symflex.loops.clouds import root_clouds  # few ask for them
+
+        canvas = replace(canvas, clouds=partial(root_clouds, share=spread, model=model))
     known = FIGURES if isinstance(drawn, Sequence) else LOOP_FIGURES
     if kind not in known:
         if kind in LOOP_FIGURES:
@@ -109,6 +117,9 @@ def draw_shape(
     ax: AxesGiven | None = None,
 ) -> Figure:
     """Draw one mode shape of a model, as :func:`draw` draws several; SF402 if nothing moves."""
+    from symflex.figures.modes import draw_shapes, heading
+    from symflex.figures.runs import panels_of
+
     canvas = _canvas(None, FREE, None, width_mm, ax)
     if not panels_of(model, [shape]):
         raise ModelError(Diagnostic("SF402", "nothing that moves in this mode could be drawn"))
@@ -117,6 +128,8 @@ def draw_shape(
 
 def picture_of_shape(model: Model, shape: EnclosedModeShape) -> Raster | None:
     """Return one mode shape as a notebook shows it; None if nothing moves that could be drawn."""
+    from symflex.figures.runs import panels_of
+
     return raster_of(draw_shape(model, shape)) if panels_of(model, [shape]) else None
 
 
@@ -191,6 +204,8 @@ def draw_over(
     stability: StabilityChart | StabilityMap, given: PlotOptions, ax: AxesGiven | None = None
 ) -> Figure:
     """Draw for which values of one parameter, or of two, a model is stable, as options say."""
+    from symflex.figures.stability import draw_stability
+
     canvas = _canvas(None, FREE, None, width_of(given.width), ax)
     drawing = partial(draw_stability, stability, canvas, with_box=given.box)
     return _styled(given.font or DEFAULT_FONT, canvas, drawing)

@@ -37,7 +37,6 @@ from symflex.expressions import (
     parse,
 )
 from symflex.library.elements import CIRCUITS
-from symflex.loops.over import seen_pair
 from symflex.model import Model
 from symflex.model.loss_factors import check_causal
 from symflex.print.forms import Arranger
@@ -144,6 +143,8 @@ def conditions(model: Model, of: str = POLES, tf: str | None = None) -> Conditio
     if of != POLES:
         (derived,) = derive_all(model, pairs[:1])
         return conditions_of(derived, f"zeros of {derived.name}", derived.num.factors)
+    from symflex.loops.over import seen_pair  # live pages ask for signs alone
+
     pair = seen_pair(model)
     (derived,) = derive_all(observed(model, pair[0]), [pair])
     hidden = ((h.polynomial, h.multiplicity) for h in derived.hidden)

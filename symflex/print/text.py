@@ -7,7 +7,7 @@ from itertools import chain, repeat
 from re import Pattern
 from re import compile as compile_pattern
 from textwrap import wrap
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from symflex.errors import REPORT, Diagnostic, InternalError
 from symflex.expressions import (
@@ -20,8 +20,10 @@ from symflex.expressions import (
     is_number,
     names,
 )
-from symflex.print.forms import PrintedForm, with_hidden
-from symflex.transfer import AnyTransferFunction
+
+if TYPE_CHECKING:
+    from symflex.print.forms import PrintedForm
+    from symflex.transfer import AnyTransferFunction
 
 WIDTH = 80
 INDENT = "  "
@@ -53,6 +55,8 @@ def _fraction_lines(
     tf: AnyTransferFunction, form: PrintedForm, kind: str, width: int, above: dict[str, list[Expression]]
 ) -> list[str]:
     """Return the lines of one transfer function, and add its definitions to those ``above``."""
+    from symflex.print.forms import with_hidden  # tables are printed without formulas
+
     quantity = tf.quantity + (f" [{tf.unit}]" if tf.unit else "")
     verdict = f"; {form.stability.headline}" if form.stability else ""
     lines = [f"{_left_side(tf, form)}   {quantity}{kind}{verdict}", ""]

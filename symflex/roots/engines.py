@@ -17,12 +17,12 @@ from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING
 
-from symflex.roots.axes.lossless import LosslessSearch, lossless_search
 from symflex.roots.counting.winding import Cell, Winding
 from symflex.roots.plane.search import RootSearch
 from symflex.roots.polynomials.discs import Proposer, propose_by_durand_kerner, propose_by_laguerre
 
 if TYPE_CHECKING:
+    from symflex.roots.axes.lossless import LosslessSearch
     from symflex.roots.counting.argument_principle import CertifiedWinding
     from symflex.roots.functions.kernel_function import KernelFunction
 
@@ -65,6 +65,8 @@ class Sought:
 
 def without_losses(sought: Sought) -> Iterator[LosslessSearch]:
     """Isolate the roots of an undamped function in one dimension, on both axes; others are refused."""
+    from symflex.roots.axes.lossless import lossless_search  # only with kernels
+
     search = lossless_search(sought.function, sought.order, sought.digits) if sought.mirrors else None
     if search is not None:
         yield search

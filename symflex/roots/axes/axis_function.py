@@ -16,10 +16,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from math import frexp, inf, isfinite, prod, sqrt
-from typing import overload
+from typing import TYPE_CHECKING, overload
 
-import numpy as np
-import numpy.typing as npt
 from flint import arb
 
 from symflex.algebra.exponential_sum import AxisWave, Monomial, Multiples, Polynomial
@@ -27,12 +25,17 @@ from symflex.balls import bits_for_digits, precision, stays_inside
 from symflex.budget import spend
 from symflex.roots.root import GUARD_BITS
 
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    Doubles = npt.NDArray[np.float64]
+
 FLOAT_BITS = 64  # precision of signs and counts: a few bits more than doubles have
 LINEAR, QUADRATIC = 1, 2
 REAL, IMAGINARY = 0, 1
 DECAYED = 2  # what is smaller than the last bit by this power is bounded rather than evaluated
 
-Doubles = npt.NDArray[np.float64]
 Rate = tuple[arb, arb]  # coefficients of t and of t^2
 
 
@@ -223,6 +226,8 @@ class _AxisDoubles:
 
     def sampled(self, t: Doubles) -> tuple[Doubles, Doubles, Doubles]:
         """Return values, derivatives, and sizes of what is summed."""
+        import numpy as np  # lumped systems need none of it
+
         exponents = [p * t + q * t * t for p, q in self._growths]
         # The last stands for what does not grow; for small t something else may be larger.
         exponents.append(np.zeros_like(t))

@@ -12,8 +12,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import cycle, islice
 from math import exp, inf, log, pi
+from typing import TYPE_CHECKING
 
-import numpy as np
 from flint import arb
 
 from symflex.balls import precision
@@ -23,7 +23,6 @@ from symflex.roots.axes.axis_function import (
     REAL,
     AxisFunction,
     AxisNewton,
-    Doubles,
     bits_of,
     bracketed,
     changes_sign,
@@ -32,6 +31,9 @@ from symflex.roots.axes.harmonic_sum import LosslessFunction, lossless_function
 from symflex.roots.counting.winding import Cell, RootOnPathError
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.root import Root
+
+if TYPE_CHECKING:
+    from symflex.roots.axes.axis_function import Doubles
 
 GRID = 0.8  # largest change of a phase [rad] from one sample to the next
 BATCH = 4096  # samples taken at once
@@ -164,18 +166,22 @@ class LosslessSearch:
 
     def _guesses(self, low: float, high: float) -> tuple[list[SignChange], int]:
         """Return all sign changes between two abs(s), ascending, and how many samples it took."""
+        import numpy as np  # lumped systems need none of it
+
         sign_changes: list[SignChange] = []
         samples = 0
         for source, exponent in self._sources:
-            changes, used = self._sign_changes(source, low, high)
+            with np.errstate(all="ignore"):  # what is too large for doubles changes no sign
+                changes, used = self._sign_changes(source, low, high)
             samples += used
             sign_changes += [SignChange(source.natural_frequency(t), t, source, exponent) for t in changes]
         sign_changes.sort(key=lambda guess: guess.frequency)
         return sign_changes, samples
 
-    @np.errstate(all="ignore")  # what is too large for doubles changes no sign
     def _sign_changes(self, source: AxisFunction, low: float, high: float) -> tuple[list[float], int]:
         """Return t at every sign change between two abs(s), close to doubles' precision."""
+        import numpy as np
+
         start, end = source.at_frequency(low), source.at_frequency(high)
         if start == 0:
             start = end * FIRST_PHASE
@@ -284,6 +290,8 @@ class LosslessSearch:
 
 def _polished(source: AxisFunction, low: Doubles, high: Doubles, below: Doubles, above: Doubles) -> Doubles:
     """Return roots of a function between pairs of points of opposite sign, by safeguarded Newton steps."""
+    import numpy as np
+
     t: Doubles = low + (high - low) * np.abs(below) / (np.abs(below) + np.abs(above))
     negative = np.signbit(below)
     for _ in range(NEWTON_STEPS):

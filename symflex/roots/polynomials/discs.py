@@ -22,13 +22,16 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
-import numpy as np
-import numpy.typing as npt
 from flint import acb, acb_poly, arb, arb_poly
 
 from symflex.balls import current_bits, precision
 from symflex.budget import spend
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
 
 Proposer = Callable[[acb_poly], tuple[acb, ...] | None]
 
@@ -154,6 +157,8 @@ def overlapping_pairs(discs: Sequence[Disc]) -> list[tuple[int, int]]:
 
 def _near_pairs(discs: Sequence[Disc]) -> Iterator[tuple[int, int]]:
     """Yield the pairs of discs that are not disjoint by far, as doubles tell."""
+    import numpy as np  # low degrees need none of it
+
     x = np.array([float(d.centre.real.mid()) for d in discs])
     y = np.array([float(d.centre.imag.mid()) for d in discs])
     r = np.array([float(d.radius.mid()) for d in discs]) * (1 + 1e-10)
@@ -244,6 +249,8 @@ def propose_by_laguerre(polynomial: acb_poly) -> tuple[acb, ...] | None:
 
 def guess_by_laguerre(polynomial: acb_poly) -> Iterator[acb]:
     """Yield one guess after the other, until there are all or it does not settle; SF506 when time is over."""
+    import numpy as np
+
     degree = int(polynomial.degree())
     shift = _central_exponent(polynomial, degree)
     scaled = acb_poly([polynomial[i] * arb(2) ** (shift * i) for i in range(degree + 1)])
@@ -304,6 +311,8 @@ def _find_one(
     derivatives_of: tuple[acb_poly, acb_poly, acb_poly], roots: npt.NDArray[np.complex128], start: complex
 ) -> complex | None:
     """Return one more root than those found, snapped to the real axis when it is nearly real."""
+    import numpy as np
+
     p, first, second = derivatives_of
     remaining = int(p.degree()) - len(roots)
     z, last = start, complex(math.inf)

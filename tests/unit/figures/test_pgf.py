@@ -11,7 +11,7 @@ from symflex import pipeline
 from symflex.codegen.latex import LatexExporter
 from symflex.errors import UsageError
 from symflex.figures import FIGURES, AxisLimits, draw, render
-from symflex.figures.files import pgf_text
+from symflex.figures.pgf import pgf_text
 from symflex.print.latex import DOCUMENT
 from tests.unit.codegen.hostile_names import HOSTILE
 from tests.unit.print.test_html import MARKUP
