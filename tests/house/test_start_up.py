@@ -34,7 +34,7 @@ ALLOWED = [
     (("derive", LUMPED, "--json"), READING),
     (("derive", LUMPED, "--format", "latex"), READING),
     (("audit", LUMPED), READING),
-    (("roots", LUMPED), {*READING, "numpy"}),
+    (("roots", LUMPED), READING),
     (("export", LUMPED, "--to", "c"), {*READING, "numpy"}),
     (("rational", LUMPED), {*READING, "numpy", "mpmath"}),
 ]
@@ -65,6 +65,13 @@ def test_a_drawing_needs_a_style_and_no_roots(tmp_path):
     found = modules_after("draw", LUMPED, "-o", str(tmp_path / "drawing.svg"))
     assert found & LIBRARIES == {*READING, "matplotlib", "numpy"}
     assert "symflex.roots" not in found
+
+
+@pytest.mark.slow
+def test_a_bode_plot_needs_no_loops_no_letters_and_no_file_but_its_own(tmp_path):
+    found = modules_after("plot", LUMPED, "bode", "-o", str(tmp_path / "bode.svg"))
+    others = {"symflex.loops", "symflex.letters", "symflex.figures.pgf", "matplotlib.backends.backend_pgf"}
+    assert not found & others
 
 
 ONLY_WITH_BEAMS = {
@@ -101,3 +108,8 @@ def test_deriving_a_lumped_model_imports_at_most_122_modules():
 def test_what_prints_formulas_does_not_import_the_packages_of_numbers(command):
     imported = modules_after(command, LUMPED)
     assert not {f"symflex.{package}" for package in NUMBERS} & imported
+
+
+@pytest.mark.slow
+def test_roots_are_printed_without_what_prints_formulas():
+    assert "symflex.print.forms" not in modules_after("roots", LUMPED)

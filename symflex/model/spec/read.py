@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Final
 
 from symflex.errors import Diagnostic, Source, Span, SpecError, UsageError, nearest
-from symflex.files.examples import example_of
 
 DATA: Final = (
     ".csv", ".tsv", ".frd", ".zma", ".s1p", ".s2p", ".uff", ".unv", ".npz", ".npy", ".mat", ".h5", ".hdf5",
@@ -98,6 +97,8 @@ def _unreadable(name: str, reason: str, hint: str | None = None) -> UsageError:
 
 def _meant(name: str) -> str | None:
     """Return a hint to the example of this name, to a file beside it with nearly this name, or to a start."""
+    from symflex.files.examples import example_of  # most files are there
+
     if name == "-":
         return "a file's name is needed: standard input is not read"
     if example := example_of(name):
