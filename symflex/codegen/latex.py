@@ -88,7 +88,7 @@ class LatexExporter:
     ) -> None:
         """Draw one figure, without its title, which stands below it."""
         from symflex.figures import LOOP_FIGURES, AxisLimits, draw, render  # imports matplotlib
-        from symflex.figures.files import MM_PER_INCH
+        from symflex.figures.style import MM_PER_INCH
         from symflex.loops.of_model import characteristic_loop
 
         name, kind = asked.name, asked.kind

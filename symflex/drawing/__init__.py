@@ -23,8 +23,7 @@ from symflex.drawing.scheme import DrawnNetwork, scheme_of, with_readings
 from symflex.drawing.signals import SignalGraph, whole
 from symflex.errors import Diagnostic, UsageError, refused
 from symflex.expressions import Name, names
-from symflex.figures.files import MM_PER_INCH
-from symflex.figures.style import DEFAULT_FONT, paper_style
+from symflex.figures.style import DEFAULT_FONT, MM_PER_INCH, paper_style
 from symflex.library.elements import LineElement
 from symflex.print.latex.page import COLUMNS_MM, WIDEST_MM, checked_width
 

@@ -123,9 +123,6 @@ def save(figure: Figure, path: Path, format: str | None = None, *, font: str = D
     write_atomically(path, render(figure, chosen, font=font))
 
 
-MM_PER_INCH: Final = 25.4
-
-
 def inline_svg(svg: str, prefix: str, label: str) -> str:
     """Return a figure as an element of a page, in the colours of that, its identifiers with a prefix."""
     content = _PROLOGUE.sub("", svg, count=1)

@@ -14,13 +14,13 @@ from matplotlib.figure import Figure
 
 from symflex.analysis.time_response import INTEGRATIONS, SampleTimes, responses_by_default, time_response
 from symflex.figures.axes import FREE, AxisLimits, Canvas, add_legend_above, root_figure, write_title
-from symflex.figures.files import MM_PER_INCH
 from symflex.figures.style import (
     COLOURS,
     COLUMN_INCHES,
     DASHES,
     DEFAULT_FONT,
     LINE_INCHES,
+    MM_PER_INCH,
     QUIET,
     label_of_tf,
     label_of_unit,

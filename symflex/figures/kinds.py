@@ -15,8 +15,7 @@ from matplotlib.text import Text
 from symflex.errors import Diagnostic, ModelError, UsageError, nearest, refused
 from symflex.figures.axes import FREE, AxesGiven, AxisLimits, Canvas, Drawing, axes_of
 from symflex.figures.figure import Raster, raster_of
-from symflex.figures.files import MM_PER_INCH
-from symflex.figures.style import DEFAULT_FONT, family_of, paper_style
+from symflex.figures.style import DEFAULT_FONT, MM_PER_INCH, family_of, paper_style
 from symflex.model import Model
 from symflex.options import PlotOptions, Stated, axis_ends, band_ends, frequency
 from symflex.print.latex import width_of

@@ -19,13 +19,13 @@ from symflex.analysis.modes import DistributedShape, EnclosedModeShape, Enclosed
 from symflex.errors import Diagnostic, ModelError, refused
 from symflex.figures.axes import Canvas, root_figure
 from symflex.figures.figure import ShownFigure, new_figure
-from symflex.figures.files import MM_PER_INCH
 from symflex.figures.runs import Panel, Plan, Run, Stems, panels_of
 from symflex.figures.style import (
     COLOURS,
     COLUMN_INCHES,
     FAINT,
     LINE_INCHES,
+    MM_PER_INCH,
     PAGE_INCHES,
     PLAIN_HIGH,
     QUIET,

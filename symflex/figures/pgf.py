@@ -19,8 +19,7 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.text import Text
 
-from symflex.figures.files import MM_PER_INCH
-from symflex.figures.style import PRIMES
+from symflex.figures.style import MM_PER_INCH, PRIMES
 from symflex.print.label import read_label
 from symflex.print.latex.text import escape_text, prose
 

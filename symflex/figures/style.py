@@ -51,6 +51,7 @@ FONTS: Final[dict[str, dict[str, object]]] = {
     },
     "sans": {"font.family": ["DejaVu Sans"], "mathtext.fontset": "dejavusans"},
 }  # fonts of texts: STIX, at home next to Times; Computer Modern, that of LaTeX; one for slides
+MM_PER_INCH: Final = 25.4
 DEFAULT_FONT: Final = "times"
 PRIMES: Final = {"'": "\N{PRIME}", "''": "\N{DOUBLE PRIME}", "'''": "\N{TRIPLE PRIME}"}
 """Signs that these fonts have for primes, by how LaTeX writes them."""

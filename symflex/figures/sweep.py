@@ -22,13 +22,13 @@ from symflex.figures.axes import (
     write_title,
 )
 from symflex.figures.figure import new_figure
-from symflex.figures.files import MM_PER_INCH
 from symflex.figures.style import (
     COLOURS,
     COLUMN_INCHES,
     DASHES,
     DEFAULT_FONT,
     LINE_INCHES,
+    MM_PER_INCH,
     QUIET,
     label_of_frequency,
     label_of_name,

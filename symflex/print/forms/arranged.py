@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from symflex.expressions import format_expression
 from symflex.model import Model
 from symflex.print.forms.arrange import Arranger, ProductPrinter
-from symflex.print.forms.shapes import Signs
+from symflex.print.forms.shapes import SumSigns
 from symflex.transfer.derive import ClosedDefinitions
 from symflex.transfer.of_model import UNASKED
 
@@ -21,7 +21,7 @@ class Arranged:
     """Printers of functions that are printed together; those of equal symbols are one, and arrange once."""
 
     _printers: dict[object, ProductPrinter] = field(default_factory=dict)
-    _signs: dict[int, tuple[Model, Signs]] = field(default_factory=dict)
+    _signs: dict[int, tuple[Model, SumSigns]] = field(default_factory=dict)
     definitions: ClosedDefinitions = field(default_factory=lambda: ClosedDefinitions(UNASKED))
 
     def printer(self, arranger: Arranger) -> ProductPrinter:
@@ -31,8 +31,8 @@ class Arranged:
         key = (arranger.ring.names, symbols, tuple(sorted(arranger.degrees.items())), arranger.apart, kept)
         return self._printers.setdefault(key, ProductPrinter(arranger))
 
-    def signs(self, model: Model) -> Signs:
+    def signs(self, model: Model) -> SumSigns:
         """Return what turns sums of a model's formulas."""
         if id(model) not in self._signs:
-            self._signs[id(model)] = model, Signs.of(model)
+            self._signs[id(model)] = model, SumSigns.of(model)
         return self._signs[id(model)][1]

@@ -71,12 +71,12 @@ S: Final = Name(LAPLACE)
 PI: Final = Name("pi")
 
 
-def shaped(model: Model, form: PrintedForm, signs: Signs | None = None) -> PrintedForm:
+def shaped(model: Model, form: PrintedForm, signs: SumSigns | None = None) -> PrintedForm:
     """Return a form in the shape a person would give it; one too long to be read as it is."""
     if is_longer(_parts(form), LARGEST):
         return form
     form = _with_plain_lines(form)
-    signs = (signs or Signs.of(model)).with_decays(form.where)
+    signs = (signs or SumSigns.of(model)).with_decays(form.where)
     made = _signed(form, signs, model)
     if _minus_signs(*_parts(form)):
         # Differences turned by the declared values: as often as not that gives more minus signs.
@@ -121,7 +121,7 @@ def _differ_in_sign(num: Expression, den: Expression) -> bool:
     return any(_texts([negative(t) for t in n.terms]) in above for n in below)
 
 
-def _signed(form: PrintedForm, signs: Signs, model: Model) -> PrintedForm:
+def _signed(form: PrintedForm, signs: SumSigns, model: Model) -> PrintedForm:
     where = tuple((name, signs.oriented(e)) for name, e in form.where)
     num, den = signs.oriented(form.num), signs.oriented(form.den)
     if _differ_in_sign(num, den):
@@ -136,7 +136,7 @@ def _signed(form: PrintedForm, signs: Signs, model: Model) -> PrintedForm:
 
 
 @dataclass(frozen=True, eq=False)
-class Signs:
+class SumSigns:
     """Turns sums, so that they are positive or as the model writes them."""
 
     known: Mapping[str, acb]
@@ -146,7 +146,7 @@ class Signs:
     turns: bool = False  # differences of parameters are turned by their values, too
 
     @staticmethod
-    def of(model: Model) -> Signs:
+    def of(model: Model) -> SumSigns:
         """Return what turns the sums of formulas of a model."""
         values = {p.name: acb(enclosure(p.value)()) for p in model.parameters if p.value is not None}
         values |= {LAPLACE: acb(FAR), "pi": acb.pi()}
@@ -158,9 +158,9 @@ class Signs:
         fixed = (S, Name("pi"), Name(IMAGINARY))
         products = (map(_base, n.factors) for n in parts if isinstance(n, Product))
         typed = dict.fromkeys(tuple(b for b in bases if b not in fixed) for bases in products)
-        return Signs(values, {_texts(n.terms): n for n in sums}, sorted(typed, key=len))
+        return SumSigns(values, {_texts(n.terms): n for n in sums}, sorted(typed, key=len))
 
-    def with_decays(self, where: Sequence[tuple[str, Expression]]) -> Signs:
+    def with_decays(self, where: Sequence[tuple[str, Expression]]) -> SumSigns:
         """Return these with what decays by the where lines, as ``exp(-gamma*l)``: it is zero far away."""
         if not where:
             return self
@@ -171,7 +171,7 @@ class Signs:
         decays = {name: acb(0) for name, _ in where if name in values and abs(values[name]) < 1 / FAR}
         return replace(self, known={**self.known, **decays}, lines=frozenset(name for name, _ in where))
 
-    def like(self, other: Expression) -> Signs:
+    def like(self, other: Expression) -> SumSigns:
         """Return these with the sums of another expression as they are written there."""
         sums = {_texts(n.terms): n for n in nodes(other) if isinstance(n, Sum)}
         return replace(self, written={**sums, **self.written})
@@ -186,7 +186,7 @@ class Signs:
         return {}
 
     @cached_property
-    def turning(self) -> Signs:
+    def turning(self) -> SumSigns:
         """The same, but differences of parameters are turned by their values, too."""
         return replace(self, turns=True)
 
