@@ -21,7 +21,7 @@ import cmath
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import combinations, pairwise
 from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, arb, arb_poly
@@ -144,10 +144,8 @@ def with_mirrors(discs: Sequence[Disc]) -> list[Disc]:
 
 def overlapping_pairs(discs: Sequence[Disc]) -> list[tuple[int, int]]:
     """Return the pairs of discs that are not proved disjoint."""
-    if len(discs) <= FEW:  # arrays pay off with more
-        candidates = [(i, j) for i in range(len(discs)) for j in range(i + 1, len(discs))]
-    else:
-        candidates = _near_pairs(discs)
+    # Arrays pay off with more.
+    candidates = combinations(range(len(discs)), 2) if len(discs) <= FEW else _near_pairs(discs)
     return [
         (i, j)
         for i, j in candidates
