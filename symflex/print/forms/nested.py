@@ -39,7 +39,7 @@ from symflex.expressions import (
     substitute,
     sum_of,
 )
-from symflex.print.forms.arrange import length
+from symflex.print.forms.arrange import length, power_of_s
 from symflex.print.forms.definitions import tidied_sum
 from symflex.print.forms.naming import Naming, names_of
 from symflex.print.forms.notation import reachable
@@ -278,7 +278,8 @@ class _Printer:
                 over, under = under, over
             above += over
             below += under
-        ratio, powers = powers_of(Quotient(_multiplied(above), _multiplied(below)))
+        ratio, all_powers = powers_of(Quotient(_multiplied(above), _multiplied(below)))
+        powers = self._with_sums_cleared(all_powers)
         above = [power(base, n) for base, n in powers.items() if n > 0]
         below = [power(base, -n) for base, n in powers.items() if n < 0]
         turned = next((n for n, f in enumerate(above) if isinstance(f, Sum) and _turned(f) is not f), None)
@@ -292,6 +293,19 @@ class _Printer:
         self.split[i] = (tuple(above), tuple(below))
         top = _multiplied(above)
         return Quotient(top, _multiplied(below)) if below else top
+
+    def _with_sums_cleared(self, powers: Mapping[Expression, int]) -> Mapping[Expression, int]:
+        """Return ``1/(L*s + R)`` for ``1/(L*R*s*(1/(L*s) + 1/R))``: what sums divide by and is a factor."""
+        for total, n in [(b, n) for b, n in powers.items() if isinstance(b, Sum) and abs(n) == 1]:
+            inner = [powers_of(term)[1] for term in total.terms]
+            divisors = {b: max(-p.get(b, 0) for p in inner) for p in inner for b, m in p.items() if m < 0}
+            if divisors and all(powers.get(b, 0) * n >= m for b, m in divisors.items()):
+                times = of_powers(Fraction(1), divisors)
+                terms = [self._ordered(*powers_of(product_of([t, times]))) for t in total.terms]
+                cleared = sum_of(sorted(terms, key=lambda t: -power_of_s(t)))
+                rest = {b: m - n * divisors.get(b, 0) for b, m in powers.items() if b != total}
+                powers = {b: m for b, m in rest.items() if m} | {cleared: n}
+        return powers
 
     def _place(self, factor: Expression) -> tuple[int, int]:
         """Return what sorts factors: numbers, parameters as declared, powers of s, and then the rest."""

@@ -969,3 +969,21 @@ def test_factors_of_a_long_product_stay_by_powers_of_s_also_with_sines_of_consta
     assert format_expression(form.den) == "*".join(
         f"(s^2 + 2*w*sin({n if n > 1 else ''}{'*' * (n > 1)}pi/40)*s + w^2)" for n in range(1, 20, 2)
     )
+
+
+def test_impedances_in_series_add_in_a_nested_line():
+    # A winding: coils with a resistance each, a capacitor beside each; z = R + L*s, as series impedances add.
+    parts = [
+        f'{kind}{k} = {{ type = "{name}", between = ["{a}{k}", "{b}{k + own}"], {letter} = "{letter}" }}'
+        for k in range(2)
+        for kind, name, a, b, own, letter in (
+            ("l", "inductor", "n", "m", 0, "L"),
+            ("r", "resistor", "m", "n", 1, "R"),
+            ("c", "capacitor", "n", "n", 1, "C"),
+        )
+    ]
+    parts += [f'g{k} = {{ type = "capacitor", between = ["n{k}", "ground"], C = "G" }}' for k in (1, 2)]
+    head = 'symflex = 1\nparameters = { L = {}, R = {}, C = {}, G = {} }\ninputs.U = { voltage = "n0" }\n'
+    model = pipeline.loads("\n".join([head + 'outputs.V = "n2"\n[elements]', *parts]))
+    (tf,) = pipeline.derive_nested(model, [("V", "U")])
+    assert "C*s + 1/(L*s + R)" in [format_expression(line) for _, line in print_form(tf).where]
