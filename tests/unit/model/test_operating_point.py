@@ -574,3 +574,22 @@ def test_halves_and_doubles_of_energies_cancel_in_print():
     ((mass,),), _, ((stiffness,),) = model.resolved.operating_point.matrices
     shown = [format_expression(entry) for entry in (mass, stiffness)]
     assert shown == ["J + 2*m*l^2", "m*g*l + 3*m*g"]  # J + m l^2 + m l^2 by hand
+
+
+@pytest.mark.parametrize("wrong", ["kinetic", "potential", "dissipation", "forces"])
+def test_an_energy_that_divides_by_zero_is_refused_at_its_place(wrong):
+    given = {
+        "kinetic": "m*x'^2/2", "potential": "k*x^2/2", "dissipation": "x'^2/2", "forces": "F"
+    }  # fmt: skip
+    given[wrong] += "/0"
+    lines = "\n".join(
+        f'{key} = {{ x = "{value}" }}' if key == "forces" else f'{key} = "{value}"'
+        for key, value in given.items()
+    )
+    head = (
+        'symflex = 1\nparameters = { m = 2, k = 3 }\ninputs = { F = {} }\noutputs = { X = "x" }\n[energy]\n'
+    )
+    with pytest.raises(SpecError) as raised:
+        loads(f'{head}coordinates = ["x"]\n{lines}\n')
+    (problem,) = raised.value.diagnostics
+    assert (problem.code, problem.span.line) == ("SF224", 7 + list(given).index(wrong))
