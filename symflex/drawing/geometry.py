@@ -226,7 +226,3 @@ class Drawing:
         """Return the drawing larger or smaller."""
         items = tuple(i.scaled(by) for i in self.items)
         return replace(self, width=by * self.width, height=by * self.height, items=items)
-
-    def of_kind(self, *kinds: str) -> tuple[Placed, ...]:
-        """Return the parts of some kinds."""
-        return tuple(item for item in self.items if item.kind in kinds)

@@ -14,6 +14,11 @@ THICK = 4.5
 PASSIVE = ("wire", "node", "join")
 
 
+def of_kind(drawing, *kinds):
+    """Return the parts of some kinds."""
+    return tuple(item for item in drawing.items if item.kind in kinds)
+
+
 def _within(box, by):
     return Extent(box.x0 + by, box.y0 + by, box.x1 - by, box.y1 - by)
 
@@ -62,7 +67,7 @@ def struck_texts(drawing):
     """Return the texts that a wire passes through, and the symbols that a dashed one does."""
     wires = [
         (item, Extent(min(a[0], b[0]), min(a[1], b[1]), max(a[0], b[0]), max(a[1], b[1])).grown(0.01))
-        for item in drawing.of_kind("wire", "join")
+        for item in of_kind(drawing, "wire", "join")
         for stroke in item.strokes
         for a, b in zip(stroke.points, stroke.points[1:], strict=False)
     ]

@@ -11,7 +11,7 @@ from symflex.drawing import drawing_of, render_drawing
 from symflex.drawing.symbols import SYMBOLS
 from symflex.library.elements import ELEMENTS
 from tests.house.repository import ROOT
-from tests.unit.drawing.geometry_checks import count, faults, place
+from tests.unit.drawing.geometry_checks import count, faults, of_kind, place
 
 LOOP = """
 symflex = 1
@@ -118,7 +118,7 @@ def test_what_is_measured_comes_back_from_beyond_the_end_of_the_path():
     drawing = drawing_of(pipeline.load(ROOT / "derivations/eppinger1988/loops/rigid_body_position.toml"))
     tag, end, driven = (place(drawing, *n) for n in (("tag", "x"), ("end", "F_act"), ("input", "X_cmd")))
     assert tag.x1 == pytest.approx(end.x1, abs=2)
-    wires = [s for i in drawing.of_kind("join") for s in i.strokes if s.is_dashed]
+    wires = [s for i in of_kind(drawing, "join") for s in i.strokes if s.is_dashed]
     for (ax, ay), (bx, by) in (pair for wire in wires for pair in pairwise(wire.points)):
         level = (end.y0 + end.y1) / 2
         assert not (ax == bx and min(ay, by) < level < max(ay, by) and driven.x1 < ax < end.x1)
@@ -215,7 +215,7 @@ def test_the_force_that_an_imposed_motion_takes_is_an_arrow_of_its_own():
 
 def test_a_wedge_ends_in_a_point():
     drawing = drawing_of(pipeline.load(ROOT / "derivations/tapers/wedge.toml"))
-    (outline,) = next(i.strokes for i in drawing.of_kind("field"))
+    (outline,) = next(i.strokes for i in of_kind(drawing, "field"))
     tip = max(x for x, _ in outline.points)
     assert len({round(y, 6) for x, y in outline.points if x == tip}) == 1
 
@@ -235,7 +235,7 @@ inputs.T = {{ torque = "p" }}
 outputs = {{ D = "q - p", P = "p" }}
 """
     drawing = drawing_of(pipeline.loads(text))
-    leads = [i.strokes[0].points for i in drawing.of_kind("wire") if i.name == "D"]
+    leads = [i.strokes[0].points for i in of_kind(drawing, "wire") if i.name == "D"]
     assert all(len({round(x, 6) for x, _ in points}) == 1 for points in leads)
 
 
@@ -243,7 +243,7 @@ outputs = {{ D = "q - p", P = "p" }}
 def test_what_is_read_twice_has_one_wire_that_branches():
     text = f'{LOOP}Other = "n + 3*x"\n'
     drawing = drawing_of(pipeline.loads(text))
-    stem, *branches = (i.strokes for i in drawing.of_kind("join") if i.name == "x")
+    stem, *branches = (i.strokes for i in of_kind(drawing, "join") if i.name == "x")
     assert len(branches) == count(drawing, "tag", "x") - 1 == 2
     for x, y in (strokes[0].points[0] for strokes in branches):
         sides = pairwise(stem[0].points)

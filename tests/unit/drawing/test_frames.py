@@ -9,7 +9,7 @@ from symflex.library.elements import ELEMENTS
 from symflex.model.model import INPUT_KINDS
 from tests.house.repository import ROOT
 from tests.random_models import sound
-from tests.unit.drawing.geometry_checks import faults, place, wrongly_counted
+from tests.unit.drawing.geometry_checks import faults, of_kind, place, wrongly_counted
 
 
 def test_members_stand_where_their_lengths_and_angles_put_them():
@@ -46,7 +46,7 @@ slanted = {{ type = "frame", between = ["p", "q"], angle = "30 deg", {member} }}
 def test_x_runs_along_the_members_of_a_frame_from_their_first_nodes():
     drawing = drawing_of(pipeline.load(ROOT / "derivations/frames/portal_frame.toml"))
     posts = [place(drawing, "element", n) for n in ("left", "right")]
-    arrows = [i.box for i in drawing.of_kind("axis")]
+    arrows = [i.box for i in of_kind(drawing, "axis")]
     assert len(arrows) >= len(posts)
     for post in posts:
         beside = [a for a in arrows if a.height > a.width and abs(a.x0 - post.x1) < 6]

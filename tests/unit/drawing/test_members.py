@@ -8,7 +8,7 @@ from symflex.drawing import drawing_of
 from symflex.drawing.symbols import TRANSFORMER_SYMBOLS
 from symflex.model import model as model_layer
 from tests.house.repository import ROOT
-from tests.unit.drawing.geometry_checks import count, faults, overlaps
+from tests.unit.drawing.geometry_checks import count, faults, of_kind, overlaps
 
 TAPERED = """
 symflex = 1
@@ -186,7 +186,7 @@ def test_the_length_of_a_beam_is_a_dimension_and_stands_in_its_label_no_more():
     length, arm, load = (item(drawing, *n).box for n in (("length", "arm"), *ARM_AND_LOAD))
     assert (length.x0, length.x1) == (pytest.approx(arm.x0), pytest.approx((load.x0 + load.x1) / 2))
     assert length.y0 > arm.y1
-    labels = [t.markup for i in drawing.of_kind("label") if i.name == "arm" for t in i.texts]
+    labels = [t.markup for i in of_kind(drawing, "label") if i.name == "arm" for t in i.texts]
     assert sum("l" in label.replace(r"\rho", "") for label in labels) == 1
 
 
@@ -199,7 +199,7 @@ def test_parallel_beams_keep_their_lengths_in_their_labels():
         f'symflex = 1\nparameters = {{ B = "1 N*m^2", l = "1 m" }}\n[elements]\n{beams}'
         'hold = { type = "fixed", at = "a" }\n[inputs]\nF = { force = "b" }\n[outputs]\nY = "b"\n'
     )
-    assert drawing.of_kind("length") == ()
+    assert of_kind(drawing, "length") == ()
     assert markups(drawing).count(r"$B,\,l$") == 2
 
 
@@ -231,7 +231,7 @@ def test_a_support_is_called_what_its_latex_says():
         text = TAPERED + 'I = "I_0"\nA = "A_0"\n[elements.held]\ntype = "' + kind + '"\nat = "end"\n'
         text = text.replace('"ground", "tip"', '"end", "tip"')
         assert r"${\text{bearing}}$" in markups(sound(text + "latex = '\\text{bearing}'\n")), kind
-        assert not [t for i in sound(text).of_kind("label") if i.name == "held" for t in i.texts], kind
+        assert not [t for i in of_kind(sound(text), "label") if i.name == "held" for t in i.texts], kind
 
 
 def test_an_element_is_called_what_its_latex_says_besides_its_parameters():
@@ -253,7 +253,7 @@ def test_free_masses_stand_on_rollers_unless_the_specification_wants_it_otherwis
     held = f'{FREE}[elements.wall]\ntype = "damper"\nbetween = ["x", "ground"]\nb = "1 N*s/m"\n'
     no, yes = "[drawing]\nrollers = false\n", "[drawing]\nrollers = true\n"
     for text, grounds in ((FREE, 2), (FREE + no, 0), (held, 1), (held + yes, 3)):
-        assert len(sound(text).of_kind("ground")) == grounds, text
+        assert len(of_kind(sound(text), "ground")) == grounds, text
 
 
 def test_nodes_stand_in_the_order_that_the_specification_wants():

@@ -9,7 +9,7 @@ from symflex import pipeline
 from symflex.cli import run
 from symflex.drawing import drawing_of
 from symflex.errors import SpecError
-from tests.unit.drawing.geometry_checks import count, faults
+from tests.unit.drawing.geometry_checks import count, faults, of_kind
 
 LONG = "a" * 64
 MEMBER = 'E = "1 GPa", rho = "1 kg/m^3", I = "1 m^4"'
@@ -273,7 +273,7 @@ outputs.y = "G*u"
 
 def test_of_a_long_chain_the_ends_and_the_number_are_drawn():
     drawing = drawing_of(pipeline.loads(f"symflex = 1\n{chain(200)}"))
-    shown = [i.name for i in drawing.of_kind("element") if i.name.startswith("m_")]
+    shown = [i.name for i in of_kind(drawing, "element") if i.name.startswith("m_")]
     assert sorted(shown) == ["m_0", "m_1", "m_198", "m_199"]
     assert "$n = 200$" in {t.markup for i in drawing.items for t in i.texts}
     assert len(drawing.abbreviated) == 196 + 197
@@ -286,7 +286,7 @@ def test_nine_masses_are_drawn_as_they_are():
 
 def test_a_long_chain_is_drawn_in_a_column_where_one_in_the_middle_is_looked_at():
     drawing = drawing_of(pipeline.loads(f'symflex = 1\n{chain(60)}Y = "x_30"\n'))
-    shown = {i.name for i in drawing.of_kind("element") if i.name.startswith("m_")}
+    shown = {i.name for i in of_kind(drawing, "element") if i.name.startswith("m_")}
     assert shown == {f"m_{i}" for i in (0, 1, 29, 30, 31, 58, 59)}
     assert count(drawing, "dots", "") == 2
     assert drawing.width == pytest.approx(88.5 / 25.4 * 72)
