@@ -57,6 +57,13 @@ def test_a_rotor_with_damping_inside_is_stable_up_to_the_onset(equation, frequen
     assert ends(rotor(equation).stability("W", (0, 2000)))[0][0] == pytest.approx(ONSET, rel=1e-13)
 
 
+def test_a_rotor_without_damping_has_its_own_poles_on_the_axis_and_no_images():
+    # Seen from axes that turn, (s + j W)^2 = -k/m: two poles on the axis at every speed.
+    found = rotor("m*(s + j*W)^2*z + k*z = F").stability(over="W", limits=(1, 300))
+    assert found.certified
+    assert [(i.poles.right, i.poles.axis) for i in found.proved.intervals] == [(0, 2)]
+
+
 def test_a_rotor_that_turns_the_other_way_whirls_backwards():
     model = rotor(WRITTEN[0][0], value="-300 rad/s", assume="real")
     backwards, forwards = ends(model.stability(over="W", limits=(-2000, 2000)))
