@@ -75,6 +75,14 @@ def test_a_budget_ends_a_search_with_or_without_what_it_proved():
         assert any(low <= root <= high for low, high in found.undecided)
 
 
+def test_the_region_that_is_looked_at_when_a_budget_ends_is_undecided_too():
+    clock = iter([0.0, *[0.0] * 4, *[9.0] * 9]).__next__
+    with Budget(seconds=1, clock=clock).entered():
+        found = branch([(0.0, 8.0)], Open, halve, keeps=True)
+    assert found.over is not None
+    assert sum(high - low for low, high in found.undecided) == 8
+
+
 def test_a_path_is_covered_by_pieces_that_touch_or_is_undecided():
     pieces = covered(lambda a, b: b <= 0.3 or a >= 0.25 or None, 1, 0.01)
     assert [a for a, *_ in pieces] == [0.0, 0.25, 0.5]
