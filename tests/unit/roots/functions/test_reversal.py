@@ -1,5 +1,6 @@
 """Waves that turn round with s: beside values of determinants at s and -s, in doubles by numpy."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -72,3 +73,14 @@ def test_a_string_that_moves_is_reversed_between_held_ends_only(end, expected):
     function = characteristic(model, ("v",), ((Fraction(1, 4), Fraction(3, 4)),))
     tf, factors = function.at_rest
     assert [is_reversed(Factored.polynomial(tf.ratio.ring, f), tf.kernels) for f in factors] == [expected]
+
+
+def test_functions_of_two_lengths_or_of_another_kind_are_not_known_to_be_reversed():
+    model = loads(MOVING.format(odd="2*v*s", start=PINNED, end=HELD))
+    tf, (factor,) = characteristic(model, ("v",), ((Fraction(1), Fraction(3)),)).at_rest
+    part, kernels = Factored.polynomial(tf.ratio.ring, factor), tf.kernels.kernels
+    assert is_reversed(part, tf.kernels)
+    used = next(k for k in kernels if part.depends_on(k.generator))
+    for other in (replace(used, length=used.length * 2), replace(used, function="exp")):
+        table = replace(tf.kernels, kernels=tuple(other if k is used else k for k in kernels))
+        assert not is_reversed(part, table)
