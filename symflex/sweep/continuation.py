@@ -21,6 +21,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
+from itertools import count
 from math import inf, log, pi, prod
 from typing import Literal
 
@@ -54,6 +55,7 @@ SEARCHED = 8.0  # how far a search of both sides may come, over the size of the 
 NARROWEST = 1e-4  # part of a contour on which the function is not looked at any closer
 POINTS = 4  # from which those at the next are foretold
 STEPS = 4  # between points that one proof is tried for at first
+LOOKS = 30  # parts of a contour that one step is worth; to count the roots at a point takes as long
 PARTS = 4  # into which a contour is cut at first, and as many for every root
 WIDENED = 1 + 2.0**-40  # makes up for the rounding of angles
 
@@ -100,6 +102,19 @@ class Continuation:
             return None
         where = default_region(model) if region is None or isinstance(region, Everything) else region
         return cls(tf, tuple(names), where, kind) if isinstance(where, Modes | Band) else None
+
+    def serves(self, verdict: StabilityVerdict) -> bool:
+        """Tell whether a verdict can be carried on, if the roots are as they should be."""
+        if self.kind == "zeros":
+            return True
+        if verdict.hidden != hidden_poles(sum(hidden.multiplicity for hidden in self.tf.hidden), 0, 0):
+            return False
+        if self._energy.is_passive:
+            is_marginal = verdict.word == "marginal"
+            return (is_marginal or verdict.word == "stable") and (
+                self._energy.rests or (is_marginal and self._meets_nowhere)
+            )
+        return verdict.certified and verdict.right is not None and verdict.word != "marginal"
 
     def begin(self, point: Point, guesses: Sequence[complex], at_zero: int) -> Carried | None:
         """Return the roots at a point where all of the region are known, and a contour about them.
@@ -148,7 +163,7 @@ class Continuation:
         i, steps = 0, STEPS
         while i < len(way) - 1:
             end = _end_of_straight(way, i, steps)
-            while end > i + 1 and not self._is_clear_between(way[i], way[end]):
+            while end > i + 1 and not self._is_clear_between(way[i], way[end], LOOKS * (end - i)):
                 steps = (end - i) // 2
                 end = i + steps
             if end > i + 1:
@@ -254,18 +269,13 @@ class Continuation:
         return is_single and all(len(f) == 1 for c in coefficients for f, e in c.factors if e > 0)
 
     def _keeps(self, verdict: StabilityVerdict, at: Carried) -> bool:
-        """Tell whether the verdict on one point is that on another, if no pole crosses the axis between."""
+        """Tell whether a verdict that serves is that on a point, if no pole crosses the axis on the way."""
         if self.kind == "zeros":
             return True
-        at_rest = sum(hidden.multiplicity for hidden in self.tf.hidden)
-        if verdict.hidden != hidden_poles(at_rest, 0, 0) or not at.is_told_from_axis:
-            return False
         on_axis = at.at_zero > 0 or any(root.on_imaginary_axis for root in at.roots)
-        if self._energy.is_passive:
-            is_said = verdict.word == ("marginal" if on_axis else "stable")
-            return is_said and (self._energy.rests or (on_axis and self._meets_nowhere))
-        right = _count([root for root in at.roots if is_right(root)])
-        return verdict.certified and not on_axis and verdict.right == right
+        if not at.is_told_from_axis or on_axis is not (verdict.word == "marginal"):
+            return False
+        return self._energy.is_passive or verdict.right == _count([r for r in at.roots if is_right(r)])
 
     @cached_property
     def _characteristic(self) -> CharacteristicFunction:
@@ -280,8 +290,11 @@ class Continuation:
         axis = self._characteristic.whole(box)
         return axis.is_bounded and not any(self._characteristic.narrowed(axis).pieces)
 
-    def _is_clear_between(self, start: Carried, end: Carried) -> bool:
-        """Tell whether no root crosses the contour, nor the axis, on the straight way between two points."""
+    def _is_clear_between(self, start: Carried, end: Carried, most: int) -> bool:
+        """Tell whether no root crosses the contour, nor the axis, on the straight way between two points.
+
+        So many parts of the contour are looked at, at most.
+        """
         if not self._keeps_side(start, end):
             return False
         ends = [
@@ -301,8 +314,15 @@ class Continuation:
             if not KernelFunction(function.bound_in(self.tf, box), own.part, own).is_analytic_on(disc, BITS):
                 return False
             circle = _Circle.of(function, box, [a < b for _, a, b in ends], heights, _left(own))
+            looks = count()
+
+            def is_clear(first: float, last: float) -> Literal[True] | None:
+                if next(looks) >= most:
+                    raise UndecidedError
+                return circle.is_clear(first, last)
+
             try:
-                covered(circle.is_clear, PARTS + PARTS * len(start.roots), NARROWEST)
+                covered(is_clear, PARTS + PARTS * len(start.roots), NARROWEST)
             except UndecidedError:
                 return False
         return True

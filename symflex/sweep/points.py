@@ -324,6 +324,8 @@ class RootSolver:
         continuation = self._continuation
         if continuation is None or known.status is not PointStatus.CERTIFIED:
             return []
+        if not continuation.serves(known.verdict):
+            return []
         families: list[int] = []
         for each in points:
             similarity, family = self._similarity(self._values(each))
