@@ -15,15 +15,16 @@ from functools import partial
 from math import inf, pi
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_poly, arb
+from flint import acb, acb_poly, arb, fmpz_mpoly
 
-from symflex.algebra import LAPLACE, NO_KERNELS, Factored, composed, degree_in
+from symflex.algebra import NO_KERNELS, Factored, degree_in, real_parts
 from symflex.balls import Open, UndecidedError, ball, bits_for_digits, branch, precision, settled
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.loops.axis import FIRST_RATIO, find_on_axis, joined, pieces
 from symflex.loops.delayed_limit import delayed_bound, delayed_limit
 from symflex.loops.loop_function import LoopFunction
 from symflex.model.loss_factors import has_loss_factors
+from symflex.model.model import IMAGINARY
 from symflex.options import band_ends
 from symflex.print.notebook import Printed
 from symflex.print.text import Passage
@@ -49,6 +50,7 @@ if TYPE_CHECKING:
 BITS, MOST_DIGITS, SPARE_DIGITS = 160, 30, 20  # of pieces, halved some hundred times; of frequencies
 SUSPECT, NARROWEST, MOST_PIECES = 1e-9, 1e-30, 20_000
 """Relative widths at which a pole is looked for, and a search given up, as with so many pieces."""
+NEGATIVE = "negative frequencies, at which complex coefficients give other magnitudes"
 BELOW, SAME, FURTHER = 1e9, 1e-7, 60  # last frequency over the first; of places as one; far-out steps
 
 
@@ -222,29 +224,15 @@ def find_peak(bound: AnyBoundFunction, digits: int = 12, band: Ends | None = Non
             delays.append(bound.ratio.ring.generator(kernel.generator))
     value = bound.ratio.filter(lambda f: f not in delays) * bound.ratio.unit
     has_kernels = any(value.depends_on(name) for name in bound.kernels.generators)
+    # Complex coefficients give other magnitudes at negative frequencies, unless they stand for losses.
+    has_signs = is_complex(value) and ends is None and not has_loss_factors(bound.source.model)
+    if has_signs and not has_kernels and bound.sheets == 1:
+        return _of_complex_polynomials(replace(bound, ratio=value, kernels=NO_KERNELS, parts=None), asked)
     if has_kernels or bound.sheets > 1 or is_complex(value):
         with precision(BITS):
             found = _Pieces(bound, LoopFunction.of(bound, bound.num, bound.den), asked).peak()
-        is_mirrored = not is_complex(value) or ends is not None or has_loss_factors(bound.source.model)
-        return found if is_mirrored else _of_both_signs(bound, value, found, is_known=not has_kernels)
+        return replace(found, reasons=(*found.reasons, NEGATIVE)) if has_signs else found
     return _of_polynomials(replace(bound, ratio=value, kernels=NO_KERNELS, parts=None), asked)
-
-
-def _of_both_signs(bound: BoundTransferFunction, value: Factored, found: Peak, *, is_known: bool) -> Peak:
-    """Return the peak of a function with complex coefficients, which differs at negative frequencies."""
-    if not is_known or bound.sheets > 1:
-        reason = "negative frequencies, at which complex coefficients give other magnitudes"
-        return replace(found, reasons=(*found.reasons, reason))
-    mirrored = composed(value, {LAPLACE: -Factored.generator(value.ring, LAPLACE)})
-    turned = replace(bound, ratio=mirrored, kernels=NO_KERNELS, parts=None, is_of_model=False)
-    with precision(BITS):
-        other = _Pieces(turned, LoopFunction.of(turned, turned.num, turned.den), found, bound).peak()
-    other = replace(other, places=tuple(-place for place in other.places))
-    if found.magnitude.overlaps(other.magnitude):
-        places = tuple(dict.fromkeys((*found.places, *other.places)))
-        size, reasons = found.magnitude.union(other.magnitude), (*found.reasons, *other.reasons)
-        return replace(found, magnitude=size, places=places, reasons=reasons)
-    return max(found, other, key=lambda each: float(each.magnitude.mid()))
 
 
 def _of_polynomials(bound: BoundTransferFunction, asked: Peak) -> Peak:
@@ -274,17 +262,61 @@ def _of_polynomials(bound: BoundTransferFunction, asked: Peak) -> Peak:
         sizes = [(abs(num(acb(0, x)) / den(acb(0, x))), [x]) for x in ends]
         if band is None and not degree:
             sizes.append((abs(num[above.degree] / den[below.degree]), []))
-        least = max((size.lower() for size, _ in sizes), key=float)
-        limit = sizes[-1][0] if band is None and not degree and level else arb(0)
-        rises = not (limit < least or any(x >= limit for x, _ in sizes[:-1]))
-        top = [each for each in sizes if not each[0] < least]
-        magnitude = least.union(max((size.upper() for size, _ in top), key=float))
+        magnitude, places, rises = _largest(sizes)
     reasons, h2 = () if magnitude.is_finite() else ("a pole may lie on the imaginary axis",), None
     if all(pole.re < 0 for pole in poles):
         h2 = arb("inf") if degree >= 0 else settled(partial(_h2_norm, above, below, asked.digits), BITS)
-    beyond = arb("inf") if rises else None
-    places = tuple(x for _, roots in top for x in roots)
+    beyond = arb("inf") if rises and level else None
     return replace(asked, magnitude=magnitude, places=places, beyond=beyond, reasons=reasons, h2=h2)
+
+
+def _of_complex_polynomials(bound: BoundTransferFunction, asked: Peak) -> Peak:
+    """Return the peak of a rational function with complex coefficients, at frequencies of both signs.
+
+    At s = j x the squares of numerator and denominator are real polynomials A and B; ``A/B`` is flat where
+    ``A' B = A B'``.
+    """
+    ring = bound.ratio.ring
+    turned = [ring.generator(IMAGINARY) * ring.context.gen(0), *ring.context.gens()[1:]]
+
+    def square(value: Factored) -> fmpz_mpoly:
+        g, h = real_parts(ring, value.expand().compose(*turned, ctx=ring.context), IMAGINARY)
+        return g * g + h * h
+
+    def real_roots(polynomial: fmpz_mpoly) -> list[arb]:
+        factors = [] if polynomial.is_zero() else [(polynomial, 1)]
+        roots = find_polynomial_roots(problem_of(bound, factors), asked.digits + SPARE_DIGITS)
+        return [root.re for root in roots if root.is_real]
+
+    n, d = square(bound.num), square(bound.den)
+    s = str(ring.context.gen(0))
+    above, below = (polynomial_in_s(bound, f) for f in (n, d))
+    if (infinite := real_roots(d)) or above.degree > below.degree:
+        return replace(asked, magnitude=arb("inf"), places=tuple(infinite[:1]))
+    level = n.derivative(s) * d - n * d.derivative(s)
+    flat = real_roots(level)
+    with precision(max([bits_for_digits(asked.digits), *(2 * omega.bits() for omega in flat)]) + BITS):
+        num, den = above.enclosure(), below.enclosure()
+        sizes = [((num(x) / den(x)).sqrt(), [x]) for x in (arb(0), *flat)]
+        if above.degree == below.degree:
+            sizes.append(((num[above.degree] / den[below.degree]).sqrt(), []))
+        magnitude, places, rises = _largest(sizes)
+    reasons = () if magnitude.is_finite() else ("a pole may lie on the imaginary axis",)
+    beyond = arb("inf") if rises and not level.is_zero() else None
+    return replace(asked, magnitude=magnitude, places=places, beyond=beyond, reasons=reasons)
+
+
+def _largest(sizes: Sequence[tuple[arb, list[arb]]]) -> tuple[arb, tuple[arb, ...], bool]:
+    """Return the largest magnitude, the frequencies at which it may be, and whether it is a limit alone.
+
+    The limit far out stands without a frequency.
+    """
+    least = max((size.lower() for size, _ in sizes), key=float)
+    top = [each for each in sizes if not each[0] < least]
+    magnitude = least.union(max((size.upper() for size, _ in top), key=float))
+    limits, others = ([size for size, at in sizes if bool(at) is is_at] for is_at in (False, True))
+    rises = any(not (limit < least or any(x >= limit for x in others)) for limit in limits)
+    return magnitude, tuple(x for _, roots in top for x in roots), rises
 
 
 def _h2_norm(above: PolynomialInS, below: PolynomialInS, digits: int) -> arb:
@@ -331,16 +363,8 @@ def _largest_first(pieces: Sequence[AxisPiece]) -> list[AxisPiece]:
 class _Pieces:
     """The search for the peak of a quotient A/B with kernels."""
 
-    def __init__(
-        self,
-        bound: BoundTransferFunction,
-        function: LoopFunction,
-        asked: Peak,
-        mirrored: BoundTransferFunction | None = None,
-    ) -> None:
+    def __init__(self, bound: BoundTransferFunction, function: LoopFunction, asked: Peak) -> None:
         self.bound, self.function, self.asked = bound, function, asked
-        # What has the poles: a function of s, or that of which this is the value at -s.
-        self.owner, self.sign = (bound, 1) if mirrored is None else (mirrored, -1)
         self.count, self.digits = 0, min(asked.digits, MOST_DIGITS)
         self.best, self.most = arb(0), arb(0)  # a magnitude that is come near; what bounds those far out
         self.beyond: arb | None = None  # where those begin, if one may be as large; infinite if it is less
@@ -435,11 +459,11 @@ class _Pieces:
             return None
         place = piece.place
         width = place.rad() / place.mid()
-        if width < SUSPECT and piece.around.b.contains(0) and self.owner.is_of_model:
+        if width < SUSPECT and piece.around.b.contains(0) and self.bound.is_of_model:
             ends = (exact_fraction(hertz(self.bound.frequency(x))) for x in (place.lower(), place.upper()))
-            for pole in locate(self.owner, Band(*ends), with_zeros=False).poles:
-                if pole.on_imaginary_axis and self.sign * pole.im > 0:
-                    return self.sign * pole.im
+            for pole in locate(self.bound, Band(*ends), with_zeros=False).poles:
+                if pole.on_imaginary_axis and pole.im > 0:
+                    return pole.im
         if self.count > MOST_PIECES or width < NARROWEST:
             message = f"the magnitude near {short_hertz(place)} Hz is not decided"
             raise BudgetError(Diagnostic("SF505", message, None, "give a --band without it"))

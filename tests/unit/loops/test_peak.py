@@ -54,9 +54,13 @@ BY_HAND = (
 )
 
 
+LEFT = -(7 / 2 + sqrt(49 / 4 + 4)) / 2
 # By hand: functions that are largest where omega is negative, as a rotor that whirls backwards.
 BACKWARDS = (
     ("1/(s + 2 + 30*j)", 0.5, -30),
+    # (x^2 + 1)/((x + 2)^2 + 4) is flat where x^2 + 7/2 x - 1 = 0, and tends to 1 on both sides.
+    ("(s + 1)/(s + 2 + 2*j)", sqrt((LEFT**2 + 1) / ((LEFT + 2) ** 2 + 4)), LEFT),
+    ("(s + 1)/(s + 2 + 2*j)*exp(-s)", sqrt((LEFT**2 + 1) / ((LEFT + 2) ** 2 + 4)), LEFT),
     ("exp(-s)/(s + 2 + 30*j)", 0.5, -30),
     ("1/(s + 30*j)", inf, -30),
     ("1/(s + 2 - 30*j)", 0.5, 30),
