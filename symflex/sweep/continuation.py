@@ -122,7 +122,7 @@ class Continuation:
         None where they cannot be carried on: one is multiple, two are too close, or others are too near.
         """
         numbers = _numbers(point)
-        if numbers is None or (isinstance(self.region, Modes) and not guesses):
+        if numbers is None:
             return None
         bound = self._bound(numbers)
         own, other = (KernelFunction(bound, _moving(side, self.tf.kernels)) for side in self._sides)
@@ -130,7 +130,7 @@ class Continuation:
         order = own.order()
         if roots is None or order is None or order != own.power * (at_zero - self._powers_of_s):
             return None
-        if self._hides_at_zero(at_zero, numbers):
+        if not self._reach(roots) or self._hides_at_zero(at_zero, numbers):
             return None
         return self._surrounded(Carried(numbers, roots, (own, other), order, at_zero))
 
