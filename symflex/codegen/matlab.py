@@ -12,6 +12,7 @@ from symflex.codegen.export import Contents, Export, Language, Member, Outline, 
 from symflex.codegen.infix import InfixPrinter, PrivateFunctions, in_lines
 from symflex.codegen.module_text import (
     FORMULA_TERMS,
+    WIDTH,
     default_value,
     identifiers,
     inert,
@@ -24,7 +25,6 @@ from symflex.print.forms.arrange import Arranger
 from symflex.print.forms.notation import constant_symbols, plain_printer
 from symflex.transfer import AnyTransferFunction, TransferFunction
 
-WIDTH = 88  # columns of generated MATLAB
 LONGEST = 63  # characters that MATLAB tells identifiers apart by
 
 KEYWORDS = frozenset(  # keywords of both languages

@@ -31,6 +31,8 @@ FOLLOWED = (  # what is said of functions of members that vary along x
     "more pieces there are; beyond a few thousand waves, values are NaN."
 )
 
+WIDTH = 88  # columns of generated C, MATLAB and Python
+
 
 def formula_of(tf: AnyTransferFunction) -> tuple[str, ...]:
     """Return the formula in paragraphs of inert text, or a sentence on it where nobody would read it."""

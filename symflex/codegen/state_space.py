@@ -17,7 +17,7 @@ from flint import fmpz_mpoly
 
 from symflex.algebra import irreducible_factors
 from symflex.codegen.export import Export, shortfalls
-from symflex.codegen.module_text import default_value, identifiers, inert, wrapped
+from symflex.codegen.module_text import WIDTH, default_value, identifiers, inert, wrapped
 from symflex.codegen.program import nodes as tree
 from symflex.codegen.program.build import TERM_LIMIT
 from symflex.codegen.program.evaluate import evaluate
@@ -31,7 +31,7 @@ from symflex.codegen.python.module import (
     parameter_table,
     row_of_table,
 )
-from symflex.codegen.python.pieces import WIDTH, PythonPrinter, statement
+from symflex.codegen.python.pieces import PythonPrinter, statement
 from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.expressions import (
     Expression,

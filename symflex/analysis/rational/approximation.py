@@ -24,6 +24,7 @@ from symflex.analysis.response import AXIS_GAP, adaptive_grid
 from symflex.balls import to_complex_mpmath
 from symflex.errors import Diagnostic, ModelError
 from symflex.errors.optional import installed
+from symflex.print.html import DIGITS
 from symflex.print.notebook import Printed
 from symflex.print.text import WIDTH, Passage
 from symflex.roots import PoleZeroMap, Root
@@ -458,7 +459,6 @@ def _doubles(numbers: Sequence[mpmath.mpf], name: str) -> npt.NDArray[np.float64
 SCHEMA = "symflex.rational/1"
 INDENT = "  "
 ESTIMATE = "some poles or zeros could not be separated, or are not proved"
-DIGITS = 10
 SHOWN_DIPS = 3  # antiresonances that are named
 JSON_DIGITS = 17  # so many give a double back exactly
 

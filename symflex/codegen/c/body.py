@@ -16,7 +16,7 @@ from fractions import Fraction
 from itertools import count
 
 from symflex.codegen.export import parts_of
-from symflex.codegen.module_text import identifiers, statement_lines
+from symflex.codegen.module_text import WIDTH, identifiers, statement_lines
 from symflex.codegen.program import nodes as tree
 from symflex.codegen.program.evaluate import nearest_double
 
@@ -240,7 +240,6 @@ RESERVED = KEYWORDS | MACROS  # what a member of the structure of parameters can
 TAKEN = RESERVED | FUNCTIONS | LOCALS  # what a variable cannot be called besides
 
 
-WIDTH = 88  # columns of generated C
 STEP = "    "
 S = Term("s", Kind.COMPLEX, varies=True)
 LANE = Term("w[j]", Kind.REAL, varies=True)

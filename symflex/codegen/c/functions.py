@@ -17,7 +17,6 @@ from symflex.codegen.c.body import (
     LANE,
     LANE_FUNCTIONS,
     STEP,
-    WIDTH,
     Body,
     Kind,
     S,
@@ -28,6 +27,7 @@ from symflex.codegen.c.body import (
     limit_text,
     quotient,
 )
+from symflex.codegen.module_text import WIDTH
 from symflex.codegen.program import nodes as tree
 
 

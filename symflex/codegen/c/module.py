@@ -6,10 +6,11 @@ import re
 from collections.abc import Sequence
 from itertools import count
 
-from symflex.codegen.c.body import KEYWORDS, LANE_FUNCTIONS, PARTS, RESERVED, WIDTH
+from symflex.codegen.c.body import KEYWORDS, LANE_FUNCTIONS, PARTS, RESERVED
 from symflex.codegen.c.functions import Functions, fits_lanes
 from symflex.codegen.export import Contents, Export, Language, Outline, called_parts
 from symflex.codegen.module_text import (
+    WIDTH,
     BlockComment,
     default_value,
     identifiers,

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from symflex.codegen.c.body import KEYWORDS, RESERVED, WIDTH
+from symflex.codegen.c.body import KEYWORDS, RESERVED
 from symflex.codegen.c.module import COMMENT, prefix_of, source_and_header
 from symflex.codegen.export import Export
+from symflex.codegen.module_text import WIDTH
 from symflex.codegen.sampled import SampledLanguage, StepFile, StepFunction
 
 ROOM = WIDTH - 3  # columns of a comment

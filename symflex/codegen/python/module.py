@@ -13,6 +13,7 @@ from functools import partial
 from symflex.codegen.export import Contents, Export, Language, Member, Outline
 from symflex.codegen.module_text import (
     FOLLOWED,
+    WIDTH,
     default_value,
     described,
     identifiers,
@@ -22,7 +23,7 @@ from symflex.codegen.module_text import (
 )
 from symflex.codegen.program.verify import Verification, double_of
 from symflex.codegen.python.dialects import ARRAY_API_DIALECT, JAX_DIALECT, NUMPY_DIALECT, Dialect
-from symflex.codegen.python.pieces import WIDTH, BlockText, PrivateText, TracedText, in_pieces, statement
+from symflex.codegen.python.pieces import BlockText, PrivateText, TracedText, in_pieces, statement
 from symflex.model import Model, ModelParameter
 
 LINTS = {  # rules of ruff that modules do not follow, whose names and texts are the model's

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from symflex.codegen.infix import InfixPrinter, in_lines
-from symflex.codegen.module_text import identifiers, statement_lines
+from symflex.codegen.module_text import WIDTH, identifiers, statement_lines
 from symflex.codegen.program import nodes as tree
 from symflex.codegen.program.evaluate import NUMPY_FUNCTIONS, number_of, numbers_of_pieces, value_of_piece
 from symflex.codegen.program.nodes import ONE, CodePiece, Piecewise
@@ -306,9 +306,6 @@ class TracedText(PrivateText):
         if not any(isinstance(n, (tree.Laplace, tree.InverseLaplace)) for n in piece.code.nodes()):
             value = f"{value} + {self.dialect.space}.zeros_like({self.variable})"
         return [*lines, *statement("return", value, "    ")]
-
-
-WIDTH = 88  # columns of generated Python
 
 
 @dataclass(frozen=True)

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from symflex.codegen.export import Export
-from symflex.codegen.module_text import BlockComment
+from symflex.codegen.module_text import WIDTH, BlockComment
 from symflex.codegen.python.dialects import NUMPY_DIALECT
 from symflex.codegen.python.module import docstring
-from symflex.codegen.python.pieces import WIDTH
 from symflex.codegen.sampled import SampledLanguage, StepFile, StepFunction
 
 

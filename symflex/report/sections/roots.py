@@ -13,6 +13,7 @@ from symflex.errors import SymflexError, UncertifiedError
 from symflex.loops import DynamicColocation, StabilityMap
 from symflex.loops.stability_map import crossover_text
 from symflex.model.loss_factors import has_loss_factors
+from symflex.print.html import DIGITS
 from symflex.print.latex import root_table
 from symflex.print.roots import KINDS, PAGE_COLUMNS, columns_for, one_of_each_pair, region_text, roots_of
 from symflex.report.document import (
@@ -39,7 +40,6 @@ from symflex.roots import PoleZeroMap
 from symflex.roots.pole_zero_map import StabilityVerdict
 from symflex.roots.root import degrees, figure
 
-DIGITS: Final = 10
 LONGEST: Final = 80
 LEFT_OUT: Final = (
     "Loss factors describe harmonic motion, s = j*omega with omega > 0. The report lists the roots above the "
