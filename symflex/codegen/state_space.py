@@ -241,10 +241,10 @@ class _Module:
         lines = [*signature, returned, docstring(self._docstring(), "    ").rstrip("\n")]
         printer = PythonPrinter(self._names, {}, "s")
         for letter, _, shape in self._system.matrices:
-            own = self._letters[letter]
-            lines.append(f"    {own} = np.zeros({shape})")
+            array = self._letters[letter]
+            lines.append(f"    {array} = np.zeros({shape})")
             for (i, j), node in self._entries[letter].items():
-                lines += statement(f"{own}[{i}, {j}]", printer.print(node), "    ")
+                lines += statement(f"{array}[{i}, {j}]", printer.print(node), "    ")
         lines.append(f"    return {', '.join(self._letters[letter] for letter in LETTERS)}")
         return "\n".join(lines) + "\n"
 

@@ -158,12 +158,12 @@ class SignalGraph:
             first, origins = origins[:MOST_AT_SUM], origins[MOST_AT_SUM:]
             # The arrow from the left is added where there is one.
             first.sort(key=lambda o: (o[1], self.nodes[o[0]].kind == "reading"))
-            place = self._new("sum", "", "")
+            node = self._new("sum", "", "")
             for origin, is_minus in first:
-                self._join(origin, place, is_minus=is_minus)
+                self._join(origin, node, is_minus=is_minus)
             if not origins:
-                return place
-            origins.insert(0, (place, False))
+                return node
+            origins.insert(0, (node, False))
 
     def _product(self, factors: list[Expression], below: Expression | None) -> tuple[int, bool]:
         varying = [f for f in factors if not self._is_constant(f)]
@@ -172,20 +172,23 @@ class SignalGraph:
             return self._whole(product if below is None else quotient(product, below)), False
         origin, is_minus = self._built(varying[0])
         constant = [f for f in factors if self._is_constant(f)]
-        own = [f for f in constant if isinstance(f, Name) and f.name in self.blocks]
-        rest = product_of([f for f in constant if f not in own])
-        gain = rest if below is None else quotient(rest, below)
+        of_blocks = [f for f in constant if isinstance(f, Name) and f.name in self.blocks]
+        gain_product = product_of([f for f in constant if f not in of_blocks])
+        gain = gain_product if below is None else quotient(gain_product, below)
         sums = [f for f in constant if isinstance(f, Sum)]
         is_named = self.nodes[origin].kind in ("input", "reading", "signal")
         if len(sums) == 1 and is_named and len(self.labels.expression(gain)) > LONGEST:  # side by side
             terms = [(whole(t), t != whole(t)) for t in sums[0].terms]
             boxes = [(self._box("gain", "", self.labels.fraction(t), origin), minus) for t, minus in terms]
-            origin, rest = self._sum(boxes), product_of([f for f in constant if f not in (*own, sums[0])])
-            gain = rest if below is None else quotient(rest, below)
+            origin, gain_product = (
+                self._sum(boxes),
+                product_of([f for f in constant if f not in (*of_blocks, sums[0])]),
+            )
+            gain = gain_product if below is None else quotient(gain_product, below)
         if gain != number(1):
             origin = self._box("gain", "", self.labels.expression(gain), origin)
             self.nodes[origin].lines = tuple(self.labels.values([gain]))
-        for block in (self.blocks[f.name] for f in own):
+        for block in (self.blocks[f.name] for f in of_blocks):
             origin = self._box("block", block.name, self.labels.name(block.name), origin)
             self.nodes[origin].lines = tuple(self.labels.values([e for _, e in block.values]))
         return origin, is_minus

@@ -118,7 +118,7 @@ def drawn(strokes: str) -> Callable[[float], Strokes]:
     [((0.0, 0.0), (8.0, 0.0)), ((8.0, 3.0), (8.0, -3.0))]
     """
     written = [stroke.split() for stroke in strokes.split(";")]
-    return lambda length: tuple(s for kind, *rest in written for s in _stroke(kind, rest, length))
+    return lambda length: tuple(s for kind, *arguments in written for s in _stroke(kind, arguments, length))
 
 
 def _stroke(kind: str, written: Sequence[str], length: float) -> Strokes:

@@ -198,15 +198,15 @@ class Cycles(AsWritten):
 
     def printed(self, published: Published) -> Published:
         """Return a printed formula with 2 pi beside what it means in radians; its lines may hide names."""
-        own = dict(published.where)
+        printed_lines = dict(published.where)
         roots = [e for e in (published.expression, published.scale) if e is not None]
-        order, circle = lines_in_order(roots, own)
+        order, circle = lines_in_order(roots, printed_lines)
         if circle:
             return published
         eager, reader = frozenset[str](), Reader()
         for _ in range(2):  # as in :func:`converted`
-            inner = self._without(own, eager, reader)
-            lines = {name: inner.define(Definition(name, own[name])).expression for name in order}
+            inner = self._without(printed_lines, eager, reader)
+            lines = {name: inner.define(Definition(name, printed_lines[name])).expression for name in order}
             read = [inner.read(root) for root in roots]
             eager, reader = frozenset(order) & inner.turning - inner.kept, self.reader
         where = tuple((name, lines.get(name, e)) for name, e in published.where)

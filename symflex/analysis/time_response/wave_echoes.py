@@ -305,13 +305,13 @@ def _over(bound: BoundTransferFunction, value: Factored, power: int, x: Value) -
     remaining = power
     for factor, exponent in value.factors:
         polynomial = polynomial_in_s(bound, factor).enclosure()
-        own: Value = acb(0)
+        evaluated: Value = acb(0)
         for c in polynomial.coeffs():
-            own = own * x + c
-        if exponent < 0 and _may_turn(at_centre(own) / acb(polynomial[polynomial.degree()])):
+            evaluated = evaluated * x + c
+        if exponent < 0 and _may_turn(at_centre(evaluated) / acb(polynomial[polynomial.degree()])):
             raise _BranchError
         remaining -= int(polynomial.degree()) * exponent
-        total = total * own**exponent
+        total = total * evaluated**exponent
     if remaining < 0:
         raise _BranchError
     return total * x**remaining if remaining else total

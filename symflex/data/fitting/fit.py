@@ -165,16 +165,16 @@ class ResonanceFit:
         deviation = np.full(modes.size(free), np.inf)
         if covariance is not None:
             deviation = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-        own = {name: np.zeros_like(getattr(modes, name)) for name in UNITS}
-        for name, index, place in modes.own_places(free):
+        errors = {name: np.zeros_like(getattr(modes, name)) for name in UNITS}
+        for name, index, columns in modes.own_places(free):
             sizes = np.abs(getattr(modes, name)[index]) if name in LOGARITHMIC else UNITS[name]
-            own[name][index] = sizes * deviation[place]
+            errors[name][index] = sizes * deviation[columns]
         return replace(
             modes,
             omega_p=modes.omega_p * deviation[:n],
             zeta_p=modes.zeta_p * deviation[n : 2 * n],
             real_p=modes.real_p * deviation[2 * n : modes.shared()],
-            **own,
+            **errors,
         )
 
     def of_response(self, response: int) -> str:
@@ -234,8 +234,10 @@ def _fit(
     for line, base in zip(problem.lines, bases, strict=True):
         wrong = ~np.isfinite(line.base) | (line.base == 0)
         if wrong.any():
-            place = float(line.observation.omega[int(np.argmax(wrong))].real) / (2 * np.pi)
-            message = f"the base {base.tf} is zero or infinite at {place:.4g} Hz, inside the band measured"
+            frequency = float(line.observation.omega[int(np.argmax(wrong))].real) / (2 * np.pi)
+            message = (
+                f"the base {base.tf} is zero or infinite at {frequency:.4g} Hz, inside the band measured"
+            )
             hint = "add damping to the base, or choose a --band without this frequency"
             raise FitError(Diagnostic("SF615", message, None, hint))
     most = max(MOST_LINES // len(problem.lines), FEWEST_OF_EACH)
@@ -293,14 +295,14 @@ def _without_false_coherence(problem: FitProblem, most: int) -> tuple[FitProblem
             continue
         plain = replace(line, is_coherence_used=False, deviation=None)
         single = with_rough_noise(replace(problem, lines=(plain,), delays=()))
-        (own,) = with_noise(with_delays(single, None), None, most).lines
-        if own.deviation is None:
+        (reweighted,) = with_noise(with_delays(single, None), None, most).lines
+        if reweighted.deviation is None:
             continue
-        ratio = (own.deviation / line.deviation) ** 2
+        ratio = (reweighted.deviation / line.deviation) ** 2
         level = float(np.mean(ratio))
         scale = max(level, 1 / MOST_AVERAGES) if level > 1 or not line.measured.averages else 1.0
         if np.mean(ratio / scale - 1 - np.log(ratio / scale)) > UNLIKE:
-            seen = f"the scatter of the lines, {20 * np.log10(1 + np.median(own.deviation)):.2g} dB"
+            seen = f"the scatter of the lines, {20 * np.log10(1 + np.median(reweighted.deviation)):.2g} dB"
             whose = f"the coherence of {line.measured.name}, {np.median(shares):.2g} in the median,"
             said.append(f"{whose} contradicts {seen}: lines are weighed by their scatter")
             lines[r] = plain
@@ -412,16 +414,18 @@ def _said_of_lines(fit: ResonanceFit) -> list[str]:
     modes, warnings = fit.resonances, []
     low, high = fit.problem.band
     for r in range(modes.responses):
-        left = fit.left_out(r)
-        if left.size:
-            places = ", ".join(f"{f:.6g}" for f in fit.measured[r].frequency_hz[left][:NAMED_LINES])
-            more = ", ..." if left.size > NAMED_LINES else ""
-            word = "outlier" if left.size == 1 else "outliers"
-            warnings.append(f"{left.size} {word}{fit.of_response(r)} left out, at {places}{more} Hz")
+        excluded = fit.left_out(r)
+        if excluded.size:
+            places = ", ".join(f"{f:.6g}" for f in fit.measured[r].frequency_hz[excluded][:NAMED_LINES])
+            more = ", ..." if excluded.size > NAMED_LINES else ""
+            word = "outlier" if excluded.size == 1 else "outliers"
+            warnings.append(f"{excluded.size} {word}{fit.of_response(r)} left out, at {places}{more} Hz")
     for r, corner in enumerate(np.abs(modes.real_z).tolist()):
         if np.isfinite(corner) and not low <= corner <= high:
-            place = f"{corner / (2 * np.pi):.4g} Hz"
-            warnings.append(f"the real zero{fit.of_response(r)} lies outside the band measured, at {place}")
+            corner_hz = f"{corner / (2 * np.pi):.4g} Hz"
+            warnings.append(
+                f"the real zero{fit.of_response(r)} lies outside the band measured, at {corner_hz}"
+            )
     poles = [*modes.omega_p[modes.zeta_p < 1].tolist(), *modes.real_corners()]
     far = ", ".join(f"{p / (2 * np.pi):.4g} Hz" for p in poles if not low / DECADE <= p <= DECADE * high)
     if far:
