@@ -95,13 +95,18 @@ def _measured(node: Expression, place: _Position) -> int:
     if type(node) is Sum:
         return _length_of_sum(node) + (2 if place is not _Position.ALONE else 0)
     parts, bare = _parts(_unsigned(node), place, "*", "^")
-    inner = sum([len(part) if isinstance(part, str) else _measured(*part) for part in parts])
-    return inner if place in bare else inner + 2
+    inner = 0 if place in bare else 2
+    for part in parts:
+        inner += len(part) if isinstance(part, str) else _measured(*part)
+    return inner
 
 
 @once
 def _length_of_sum(node: Sum) -> int:
-    return sum([len(part) if isinstance(part, str) else _measured(*part) for part in _sum_parts(node.terms)])
+    length = 0
+    for part in _sum_parts(node.terms):
+        length += len(part) if isinstance(part, str) else _measured(*part)
+    return length
 
 
 def _parts(

@@ -9,10 +9,10 @@ numbers stays what it is. Walks over a tree list its parts, replace them, and fo
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from fractions import Fraction
 from functools import reduce, wraps
-from operator import add, mul, neg, truediv
+from operator import add, attrgetter, mul, neg, truediv
 from typing import Any, TypeVar, dataclass_transform
 
 from symflex.errors import Span
@@ -33,20 +33,21 @@ class _Remembering:
 def _node(kind: type[Node]) -> type[Node]:
     """Make a frozen dataclass whose instances find their hash, which their parts take part in, once."""
     made = dataclass(frozen=True, slots=True)(kind)
-    compute = made.__hash__
+    values = attrgetter(*(each.name for each in fields(made) if each.compare))  # type: ignore[arg-type]
 
     def remembered(self: _Remembering) -> int:
         try:
             return self._hash
         except AttributeError:
-            object.__setattr__(self, "_hash", own := compute(self))
-            return own
+            pass
+        object.__setattr__(self, "_hash", own := hash(values(self)))
+        return own
 
     made.__hash__ = remembered  # type: ignore[assignment, method-assign]
     return made
 
 
-@_node
+@dataclass(frozen=True, slots=True)
 class Expression(_Remembering):
     """Base of all nodes; ``span`` is where the node was written, if it was written."""
 
