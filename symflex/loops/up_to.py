@@ -405,15 +405,20 @@ class PolesUpTo:
         """
         first, last = values.ends
 
+        def piece_of(low: float, high: float) -> Piece:
+            # Poles meet an arc next to the axis, where it ends: looked at first, they end the search.
+            ends = Fraction(low), Fraction(high)
+            return ends if path.kind == "axis" else (1 - ends[1], 1 - ends[0])
+
         def decide(low: float, high: float) -> bool | None:
-            found = self._bound(values, factor, path, (Fraction(low), Fraction(high)))
+            found = self._bound(values, factor, path, piece_of(low, high))
             has_more = found.may_vanish and (found.may_turn or not most)
             if has_more and found.is_as_sharp_as_the_part and first < last:
                 raise UndecidedError  # no shorter piece serves
             return not has_more or None
 
         pieces = covered(decide, path.cells, SHORTEST)
-        return [(Fraction(low), Fraction(high)) for low, high, _ in pieces]
+        return sorted(piece_of(low, high) for low, high, _ in pieces)
 
     def frequencies(self, part: OpenPart) -> tuple[tuple[Piece, ...], ...]:
         """Return the pieces of the axis in rad/s, as narrow as places where two poles meet are known."""
