@@ -145,7 +145,9 @@ def bind(
         shared = below  # of a function that vanishes for these values every mode is hidden
     varying = [0, *(ring.index[k.generator] for k in tf.kernels.kernels)]
     hidden = [HiddenFactor(f, e) for f, e in shared.factors if any(degree_in(f, i) for i in varying)]
-    if (hidden or tf.hidden) and used and not varied and tf.solve is not None:
+    # Numbers in place of names only slow the search for roots of waves, where nothing cancels by its value.
+    is_other = hidden or (tf.hidden and not tf.kernels)
+    if is_other and used and not varied and tf.solve is not None:
         # A difference of parameters that is zero connects nothing, and subsystems that are equal are one.
         with suppress(ModelError):
             return _derived_with_numbers(tf, exact, every)
