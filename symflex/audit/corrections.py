@@ -52,6 +52,7 @@ MOST_PARTS = 150
 MOST_TERMS = 1000
 MOST_WORK = 20_000  # number of terms in all values that parts would need
 EXPONENTS = tuple(Fraction(n, 2) for n in (2, 4, -2, 1, 6, -1, 8, -4, 3, 0, -3, -6))
+MOST_FACTORS = 6  # of a product of which some are tried on the other side of the bar; of more, all are
 FACTORS = (Fraction(2), Fraction(1, 2), Fraction(-1), Fraction(4), Fraction(1, 4))
 REAL_POINT, FEW_DIGITS = (Fraction(1), Fraction(0)), 15
 """First point at which a formula with another line is tried, and its digits: roots are unambiguous there."""
@@ -87,8 +88,9 @@ def find_correction(reading: FormulaReading, tf: TransferFunction) -> Correction
     numbers = numbers_of(reading.formula, tf, tf.model)
     lines = _mended_lines(reading, numbers), _other_lines(reading, numbers)
     inside = _mended_calls(reading, tf, numbers), _exchanged_names(reading, numbers)
+    sums = _both_sums(reading), _inverted_ratios(reading, numbers)
     last = lines[1], _derived_lines(reading, tf, numbers), _slipped_twice(reading, numbers)
-    for change in chain(lines[0], inside[0], _in_expression(reading), inside[1], _both_sums(reading), *last):
+    for change in chain(lines[0], inside[0], _in_expression(reading), inside[1], *sums, *last):
         corrected = Formula(change.expression, change.scale, change.lines, reading.formula.parameters)
         try:
             again = read(corrected, tf)
@@ -386,6 +388,32 @@ def _more_terms(wanted: _Wanted) -> Iterator[Correction]:
         yield wanted.replaced_by(sum_of([*printed, term]), Change(wanted.place, number(0), term))
 
 
+def _inverted_ratios(reading: FormulaReading, numbers: Numbers) -> Iterator[Correction]:
+    """Yield the formula with a ratio in it turned over, of the smallest part that can be mended so."""
+    formula = reading.formula
+    parts = list(_parts(formula.expression))[:MOST_PARTS]
+    for part, side in sorted(parts, key=lambda p: len(nodes(p[0]))):
+        for new in _turned_over(part):
+            spend()
+            expression = _replaced(formula.expression, part, new)
+            if _agrees(replace(numbers, formula=replace(formula, expression=expression))):
+                yield Correction((Change(side, part, new),), expression, formula.scale, formula.lines)
+
+
+def _turned_over(part: Expression) -> Iterator[Expression]:
+    """Yield a product with some of its factors on the other side of the bar."""
+    if not isinstance(part, Product | Quotient):
+        return
+    front, powers = powers_of(part)
+    if not front:
+        return
+    ordered = sorted(powers.items(), key=lambda item: isinstance(item[0], Sum))
+    fewest = 1 if len(powers) <= MOST_FACTORS else len(powers)
+    for count in range(len(powers), fewest - 1, -1):
+        for turned, scale in product(combinations(powers, count), dict.fromkeys((front, 1 / front))):
+            yield of_powers(scale, {base: -n if base in turned else n for base, n in ordered})
+
+
 def _exchanged_names(reading: FormulaReading, numbers: Numbers) -> Iterator[Correction]:
     """Yield the formula with two names exchanged, everywhere or in one of its sums."""
     formula = reading.formula
@@ -459,7 +487,9 @@ def _mended_lines(reading: FormulaReading, numbers: Numbers) -> Iterator[Correct
             continue
         earlier = (other for other, _ in reading.formula.lines[:i])
         others = [Name(n) for n in (*sorted(reading.formula.parameters), *earlier)]
-        for new in _slips(line, others):
+        parts = islice(nodes(line), MOST_PARTS)
+        turned = (_replaced(line, part, new) for part in parts for new in _turned_over(part))
+        for new in chain(_slips(line, others), turned):
             yield from _with_lines(reading, numbers, {i: (name, line, new)})
 
 

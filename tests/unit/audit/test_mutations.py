@@ -326,3 +326,45 @@ def test_a_repair_divides_no_name_by_itself():
         (change,) = found.changes
         sides = format_expression(change.printed), format_expression(change.derived)
         assert sides == (misprint, "T_22")
+
+
+TWO_INERTIAS = """symflex = 1
+parameters = { J_1 = "0.01 kg*m^2", J_2 = "0.02 kg*m^2", k = "500 N*m/rad", d = "0.4 N*m*s/rad" }
+inputs.T = { torque = "a" }
+outputs.W_2 = "s*b"
+[elements]
+first = { type = "inertia", at = "a", J = "J_1" }
+second = { type = "inertia", at = "b", J = "J_2" }
+shaft = { type = "torsion_spring", between = ["a", "b"], k = "k" }
+losses = { type = "rotary_damper", between = ["a", "b"], b = "d" }
+[published."W_2/T"]
+"""
+# The sum and the difference of J_1*s^2*a = T - (d*s + k)*(a - b) and J_2*s^2*b = (d*s + k)*(a - b) give
+# W_2/T = (1 + d/k*s)/(J_1 + J_2)/s/(1 + d/k*s + J_1*J_2/(k*(J_1 + J_2))*s^2).
+TURNED_RATIOS = [
+    (
+        "(1 + d/k*s)/((J_1 + J_2)*s)/(1 + d/k*s + (J_1 + J_2)/(k*J_1*J_2)*s^2)",
+        "denominator: (J_1 + J_2)/(k*J_1*J_2), J_1*J_2/(k*(J_1 + J_2))",
+    ),
+    (
+        "(1 + d/k*s)/((J_1 + J_2)*s)/(1 + d/k*s + (s*sqrt((J_1 + J_2)/(J_1*J_2*k)))^2)",
+        "denominator: (J_1 + J_2)/(J_1*J_2*k), J_1*J_2/(k*(J_1 + J_2))",
+    ),
+    (
+        "1/((J_1 + J_2)*s)*(1 + d/k*s + J_1*J_2/(k*(J_1 + J_2))*s^2)/(1 + d/k*s)",
+        "numerator: 1/((J_1 + J_2)*s)*(1 + d/k*s + J_1*J_2/(k*(J_1 + J_2))*s^2)/(1 + d/k*s), "
+        "(1 + d/k*s)/(s*(J_1 + J_2)*(1 + d/k*s + J_1*J_2/(k*(J_1 + J_2))*s^2))",
+    ),
+    (
+        "(1 + d/k*s)/((J_1 + J_2)*s)/D', where.D = '1 + d/k*s + s^2*(J_1 + J_2)/(k*J_1*J_2)",
+        "line D: 1 + d/k*s + s^2*(J_1 + J_2)/(k*J_1*J_2), 1 + d/k*s + s^2*J_1*J_2/(k*(J_1 + J_2))",
+    ),
+]
+
+
+def test_a_ratio_turned_over_is_found_with_sums_among_its_factors():
+    for expr, expected in TURNED_RATIOS:
+        lines = f"expr = '{expr}'".replace(", where", "\nwhere")
+        (change,) = audit(pipeline.loads(TWO_INERTIAS + lines))[0].changes
+        printed, derived = format_expression(change.printed), format_expression(change.derived)
+        assert f"{change.place}: {printed}, {derived}" == expected
