@@ -28,6 +28,7 @@ from benchmarks import (
     members,
     nested,
     numeric_chain,
+    peers,
     printing,
     roots,
     startup,
@@ -56,6 +57,7 @@ BENCHMARKS: Final[Mapping[str, Callable[[Extent], Measured]]] = {
     "tapers": tapers.measure,
     "sweep": sweep.measure,
     "errors": errors.measure,
+    "peers": peers.measure,
 }
 LIMIT: Final = 60.0
 """Seconds each way may take."""
