@@ -57,6 +57,7 @@ from symflex.print.forms.frequency import FrequencyPage
 from symflex.print.forms.invariants import IMAGINARY
 from symflex.print.forms.naming import Naming
 from symflex.print.forms.notation import Line, constant_symbols, plain_printer, reachable, wave_times_length
+from symflex.print.forms.shapes import SumSigns
 from symflex.roots.passivity import observed
 from symflex.transfer import BoundTransferFunction, TransferFunction
 from symflex.transfer.of_model import derive_all
@@ -112,7 +113,8 @@ def boundary(model: Model, over: Sequence[str]) -> Conditions:
         at_rest = {k.generator: ring.constant(1) for k in tf.kernels.kernels} | {LAPLACE: ring.constant(0)}
         factors = irreducible_factors(ring.replaced(moving[0], at_rest))[1]
         arranger = Arranger.plain(ring, constant_symbols(tf))
-        curve += [relation_of(arranger, f, "=") for f, _ in factors if ring.used_in((f,)) & {*over}]
+        shown_over = (f for f, _ in factors if ring.used_in((f,)) & {*over})
+        curve += [relation_of(arranger, f, "=", SumSigns.of(model)) for f in shown_over]
     said = f"boundary over {gain} and {other}: a pole on the imaginary axis{turns}"
     return Conditions(model, "boundary", said, tuple(curve))
 

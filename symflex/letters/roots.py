@@ -16,18 +16,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import Final
 
 from flint import acb, arb, fmpz_mpoly
 
 from symflex import expressions as e
-from symflex.algebra import LAPLACE, Factored, Ring
+from symflex.algebra import LAPLACE, Factored, Ring, irreducible_factors
 from symflex.expressions import Call, Expression, Name, format_expression
-from symflex.letters.routh import Factor, Signs, SymbolicRelation, aligned, read, relation_of
+from symflex.letters.routh import Factor, Signs, SymbolicRelation, aligned, read, relation_of, without_minus
 from symflex.model import Model
 from symflex.print.forms.arrange import ProductPrinter, length, with_squares
 from symflex.print.forms.naming import Naming
+from symflex.print.forms.shapes import SumSigns
 from symflex.print.latex import latex_expression
 from symflex.print.latex.equation import model_labels
 from symflex.print.roots import SHORT_DIGITS
@@ -134,6 +135,11 @@ class LetterReader:
     printer: ProductPrinter
     signs: Signs
 
+    @cached_property
+    def turns(self) -> SumSigns:
+        """What writes sums as the model does."""
+        return SumSigns.of(self.tf.model)
+
     def value(self, expression: Expression, **more: acb) -> acb:
         """Return a ball around what the text of an expression says."""
         known = {"pi": acb.pi(), **more}
@@ -192,28 +198,32 @@ class LetterReader:
                 two = e.quotient(e.sum_of([over, one]), self.printer.sum(below)), e.sum_of([mean_text, other])
                 root = min((Call("sqrt", x) for x in two), key=length)
                 tried += [("omega", root, x, "rad/s") for x in sizes]
-        for name, expression, value, unit in tried:
+        for name, printed, value, unit in tried:
+            expression = without_minus(printed, self.turns)
             apart = self.value(expression) - value  # not finite where zeta is 0
             if length(expression) <= LONGEST and apart.is_finite() and apart.contains(0):
                 mine = roots if degree <= PAIR else [r for r in roots if r.size().overlaps(value)]
                 yield RootFormula(name, expression, value, unit, tuple(mine))
 
-    def root(self, square: Factored) -> Expression:
-        """Return a positive square root; squares of what may be negative stay below it."""
+    def root(self, square: Factored, front: Factored | None = None) -> Expression:
+        """Return a positive square root times what is in front; squares of unknown sign stay below it."""
         ring = square.ring
         square = self.tf.radicals.shortest(square).map_factors(ring, lambda f: with_squares(ring, f))
         if all(self.signs.of_polynomial(f) for f, e in square.factors if abs(e) > 1):
-            return self.printer.square_root(square)
-        return Call("sqrt", self.printer.quotient(square))
+            return self.printer.square_root(square, front)
+        above, below = self.printer.sides(square**0 if front is None else front)
+        return e.quotient(e.product_of([above, Call("sqrt", self.printer.quotient(square))]), below)
 
     def _damping(self, c: Sequence[fmpz_mpoly]) -> tuple[Expression, Expression]:
-        """Return zeta, ``b/(2 sqrt(a c))`` with what it has twice taken out of the root, and 1/(2 zeta)."""
+        """Return zeta, ``b/(2 sqrt(a c))``, and 1/(2 zeta); what has a known sign is taken into the root."""
         low, middle, high = (Factored.polynomial(self.tf.ring, each) for each in c)
-        if self.signs.of_polynomial(c[1]) > 0:
-            square = low * high / middle**2
-            return self.root(1 / (square * 4)), self.root(square)
-        zeta = e.quotient(self.printer.quotient(middle), e.product_of([e.number(2), self.root(low * high)]))
-        return zeta, e.quotient(e.number(1), e.product_of([e.number(2), zeta]))
+        number, factors = irreducible_factors(c[1])
+        front = Factored.number(self.tf.ring, 1 if number > 0 else -1)
+        for factor, times in factors:
+            sign = self.signs.of_polynomial(factor)
+            front = front * (sign**times if sign else Factored.polynomial(self.tf.ring, factor) ** times)
+        square = low * high * front**2 / middle**2
+        return self.root(1 / (square * 4), front), self.root(square, 1 / front)
 
     def _kinds(self, kind: str, c: Sequence[fmpz_mpoly]) -> Iterator[Kind]:
         """Yield what the roots may be, each with its conditions."""
@@ -232,7 +242,7 @@ class LetterReader:
             needed = self.signs.reduced([f.numerator().expand() * x for f, x in plain])
             if self.signs.is_never(needed):
                 continue
-            shown = [relation_of(self.printer.arranger, f, sign) for f, sign in needed]
+            shown = [relation_of(self.printer.arranger, f, sign, self.turns) for f, sign in needed]
             sides = [(each, *each.sides) for each in shown if each.sides]
             over = [((self.value(a) - self.value(b)).real, each.sign) for each, a, b in sides]
             if len(over) == len(shown):

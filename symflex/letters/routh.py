@@ -14,7 +14,7 @@ determinants ``D_(n-1)``, ``D_(n-3)``, ... (Liénard and Chipart 1914; Gantmache
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import prod
 from random import Random
 from typing import Final, Literal
@@ -31,10 +31,17 @@ from symflex.expressions import (
     Expression,
     Name,
     Negative,
+    Product,
+    Quotient,
+    Sum,
     format_expression,
+    negative,
     nodes,
     number,
     parse,
+    product_of,
+    quotient,
+    sum_of,
 )
 from symflex.library.elements import CIRCUITS
 from symflex.model import Model
@@ -42,6 +49,7 @@ from symflex.model.loss_factors import check_causal
 from symflex.print.forms import Arranger
 from symflex.print.forms.arrange import length
 from symflex.print.forms.notation import constant_symbols
+from symflex.print.forms.shapes import SumSigns, rebuilt
 from symflex.print.latex import latex_expression
 from symflex.print.latex.equation import model_labels
 from symflex.print.text import broken
@@ -179,7 +187,8 @@ def conditions_of(
             moving.append((factor, 1 + is_even))
             needed += _hurwitz(signs, factor, is_even=is_even)[: 3 if is_kept_left else None]
     kept = signs.reduced(needed)
-    found, is_never = [(f, relation_of(arranger, f, sign)) for f, sign in kept], signs.is_never(kept)
+    turns, is_never = SumSigns.of(tf.model), signs.is_never(kept)
+    found = [(f, relation_of(arranger, f, sign, turns)) for f, sign in kept]
     _check(tf, signs, moving, found)
     stay = ", ".join(text + (f" ({n} times)" if n > 1 else "") for text, n in on_axis)
     said = f"those of {stay} on the imaginary axis, all others {LEFT}" if on_axis else f"all {LEFT}"
@@ -193,14 +202,56 @@ def aligned(rows: Sequence[str]) -> list[str]:
     return [r"\begin{align*}", " \\\\\n".join(rows), r"\end{align*}"] if rows else []
 
 
-def relation_of(arranger: Arranger, polynomial: fmpz_mpoly, sign: Sign) -> SymbolicRelation:
+def relation_of(arranger: Arranger, polynomial: fmpz_mpoly, sign: Sign, turns: SumSigns) -> SymbolicRelation:
     """Return a condition in its shortest print: all on the left, or no minus sign."""
     if len(polynomial) > LONGEST:
         return SymbolicRelation(len(polynomial), sign, None)
     parts = [{m: c * sign for m, c in polynomial.terms() if c * sign > 0} for sign in (1, -1)]
     above, below = (arranger.grouped(polynomial.context().from_dict(part)) for part in parts)
-    tried = (arranger.grouped(polynomial), number(0)), (above, below)
+    left = without_minus(arranger.grouped(polynomial), turns)
+    tried = [(left, number(0)), (turns.oriented(above), turns.oriented(below))]
+    if isinstance(left, Sum):
+        taken = [term.operand for term in left.terms if isinstance(term, Negative)]
+        tried.append((sum_of(t for t in left.terms if not isinstance(t, Negative)), sum_of(taken)))
     return SymbolicRelation(len(polynomial), sign, min(tried, key=lambda sides: length(*sides)))
+
+
+def without_minus(expression: Expression, turns: SumSigns) -> Expression:
+    """Return an expression with its sums as the model writes them, and its sign taken into one of them."""
+
+    def absorbed(whole: Expression) -> Expression:
+        match whole:
+            case Negative(Quotient(above, below)) | Quotient(Negative(above), below):
+                if (turned := _turned(above)) is None and (other := _turned(below)) is not None:
+                    return quotient(above, other)
+                return quotient(turned or negative(above), below)
+            case Negative(inner):
+                return _turned(inner) or whole
+            case Sum(terms) if all(isinstance(term, Negative) for term in terms):
+                return _turned(sum_of(map(negative, terms))) or whole
+        return whole
+
+    def in_roots(part: Expression) -> Expression:
+        return replace(part, argument=absorbed(part.argument)) if isinstance(part, Call) else part
+
+    return absorbed(rebuilt(turns.oriented(expression), in_roots))
+
+
+def _turned(expression: Expression) -> Expression | None:
+    """Return minus an expression, the sign within a difference in it; nothing without one."""
+    match expression:
+        case Negative(operand):
+            return operand
+        case Product(factors):
+            turned = ((i, _turned(f)) for i, f in enumerate(factors))
+            found = next(((i, f) for i, f in turned if f is not None), None)
+            return found and product_of([*factors[: found[0]], found[1], *factors[found[0] + 1 :]])
+        case Sum(terms):
+            is_difference = any(isinstance(t, Negative) for t in terms)
+            made = [negative(t) if is_difference else _turned(t) or negative(t) for t in terms]
+            made.sort(key=lambda t: isinstance(t, Negative))
+            return None if isinstance(made[0], Negative) else sum_of(made)
+    return None
 
 
 def is_passive(model: Model) -> bool:

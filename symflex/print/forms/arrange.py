@@ -456,9 +456,10 @@ class ProductPrinter:
         """Return the product as one expression."""
         return quotient(*self.sides(value))
 
-    def square_root(self, value: Factored) -> Expression:
-        """Return one square root of a product, with what is a square outside the sign of the root."""
-        outside = inside = value**0
+    def square_root(self, value: Factored, front: Factored | None = None) -> Expression:
+        """Return one square root of a product times ``front``, with squares outside the sign of the root."""
+        inside = value**0
+        outside = inside if front is None else front
         if not value.ring.is_sparse:  # (h + g)^2 is a factor by itself
             value = value.map_factors(value.ring, partial(with_squares, value.ring))
         for factor, exponent in value.factors:

@@ -113,6 +113,48 @@ def test_formulas_are_those_of_books() -> None:
     assert not wrong
 
 
+def test_formulas_are_reduced_and_take_their_minus_sign_into_a_difference() -> None:
+    """By hand: zeta = b/(2*sqrt(a*c)) of a*s^2 + b*s + c, what is positive divided out of b and the root."""
+    lines = 'definitions.T = "1/f"\n'
+    sampled = "(1 + T*(m*(1 - D) - 1/2)*s + T^2*s^2/pi^2)"
+    cases = (
+        ("f D m", lines + SIGNAL.format(f"u/{sampled}"), "zeta_p", "pi*(2*m*(1 - D) - 1)/4"),
+        ("f D m", lines + SIGNAL.format(f"u/{sampled}"), "Q_p", "2/(pi*(2*m*(1 - D) - 1))"),
+        ("m b k K h", SIGNAL.format("u/(m*s^2 + b*(h - K)*s + k)"), "zeta_p", "b*(h - K)/(2*sqrt(m*k))"),
+        ("a b c", SIGNAL.format("u*(a*b*s^2 - a*b*(a + c)*s + a*b*c)/s^3"), "zeta_z", "-(a + c)/(2*sqrt(c))"),
+        ("a b c", SIGNAL.format("u/(a*s + c - b)"), "s_p", "(b - c)/a"),
+        ("a b c", SIGNAL.format("u*((b - a)*s^2 + c)/s^3"), "omega_z", "sqrt(c/(b - a))"),
+        ("a b c", SIGNAL.format("u*((b - a)*s^2 + c)/s^3"), "sigma_z", "sqrt(c/(a - b))"),
+    )
+    wrong = []
+    for parameters, text, name, expected in cases:
+        said = {
+            f.name: format_expression(f.expression)
+            for seed in (3, 5)  # of either sign
+            for each in said_of(parameters, text, seed)[0]
+            for f in each.formulas
+        }
+        wrong += [(expected, said)] if said.get(name) != expected else []
+    assert not wrong
+
+
+def test_conditions_of_kinds_begin_with_no_minus_sign() -> None:
+    """By hand: the discriminant of s^2 + pi^2*f*(m*(1 - D) - 1/2)*s + pi^2*f^2, squares divided out."""
+    text = SIGNAL.format("u/(s^2 + pi^2*f*(m*(1 - D) - 1/2)*s + pi^2*f^2)")
+    kinds = {
+        words.partition(" if ")[0]: shown
+        for each in said_of("f D m", text)[0]
+        for words, _, shown in each.kinds
+    }
+    d, m = sympy.symbols("D m")
+    spread = sympy.pi**2 * (2 * m * (1 - d) - 1) ** 2 - 16
+    for words, sign in (("a complex pair", -1), ("two real roots", 1)):
+        (shown,) = kinds[words]
+        assert "-" not in (str(shown)[0], str(shown).partition(" > ")[2][0])
+        left, right = (sympy.sympify(side.replace("^", "**"), {"D": d}) for side in str(shown).split(" > "))
+        assert sympy.expand(left - right - sign * spread) == 0
+
+
 def kind_of(polynomial: np.ndarray) -> dict[str, int]:
     """Return how many pairs of roots of an even polynomial are imaginary, real, or half a quartet."""
     squares = np.roots(polynomial)  # of z = s^2
