@@ -198,6 +198,7 @@ def test_with_a_delay_an_integrator_is_stable_up_to_pi_over_twice_the_time(funct
     assert float(found.stable[0][1]) == pytest.approx(highest, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_a_search_that_takes_too_long_says_that_a_narrower_range_may_do_and_it_does():
     # s + 3 sqrt(K) exp(-s T) + 0.3 K s exp(-2 s T): the slope of the root has no bound next to K = 0.
     model = symflex.Model(
