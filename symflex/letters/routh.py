@@ -23,8 +23,9 @@ from flint import acb, acb_poly, fmpz_mpoly
 
 from symflex.algebra import Ring, by_powers, degree_in, irreducible_factors, summed, terms_of
 from symflex.balls import precision
+from symflex.budget import spend
 from symflex.equations.elimination.determinants import Minors
-from symflex.errors import REPORT, Diagnostic, InternalError, ModelError, Text, UsageError
+from symflex.errors import REPORT, BudgetError, Diagnostic, InternalError, ModelError, Text, UsageError
 from symflex.expressions import (
     PROGRAM_LIMITS,
     Call,
@@ -46,18 +47,19 @@ from symflex.expressions import (
 from symflex.library.elements import CIRCUITS
 from symflex.model import Model
 from symflex.model.loss_factors import check_causal
-from symflex.print.forms import Arranger
+from symflex.print.forms import CLOSED, Arranger
 from symflex.print.forms.arrange import length
-from symflex.print.forms.notation import constant_symbols
+from symflex.print.forms.notation import Line, constant_symbols, reachable
 from symflex.print.forms.shapes import SumSigns, rebuilt
 from symflex.print.latex import latex_expression
 from symflex.print.latex.equation import model_labels
 from symflex.print.text import broken
 from symflex.roots.passivity import energy_proof, observed
 from symflex.transfer import TransferFunction
+from symflex.transfer.derive import ClosedDefinitions
 from symflex.transfer.enclose import principal_values
 from symflex.transfer.expansion import Expansion
-from symflex.transfer.of_model import assemble, derive_all, pick_pairs
+from symflex.transfer.of_model import UNASKED, assemble, derive_all, pick_pairs
 
 LONGEST: Final = 40  # terms of a condition that a person still reads: half a page
 MOST_TERMS: Final = 20_000  # terms of a determinant, which take about a second
@@ -104,13 +106,16 @@ class Conditions:
     conditions: tuple[SymbolicRelation, ...]
     on_axis: tuple[tuple[str, int], ...] = ()  # factors whose roots stay on the axis, with multiplicities
     is_never: bool = False  # True if no values meet the conditions
+    where: tuple[Line, ...] = ()  # the definitions that stay closed in it
 
     def __str__(self) -> str:
         loose = ", ".join(p.name for p in self.model.parameters if p.assume != "positive")
-        values = f"for positive values of all letters{f' but {loose}' if loose else ''}"
+        letters = "parameters" if self.where else "letters"
+        values = f"for positive values of all {letters}{f' but {loose}' if loose else ''}"
+        lines = (f"where {name} = {format_expression(e)}" for name, e in self.where)
         realness = (f"where {root} is real" for root in self.roots_at_rest)
         return "\n    ".join(
-            ["\n".join(broken(self.sentence)), *map(str, self.conditions), values, *realness]
+            ["\n".join(broken(self.sentence)), *map(str, self.conditions), values, *realness, *lines]
         )
 
     @property
@@ -125,13 +130,19 @@ class Conditions:
         """Return the conditions as a display, the sentence above them as a comment."""
         labels = model_labels(self.model)
         comments = [f"% {x}" for x in (self.sentence, *(c for c in self.conditions if not c.sides))]
-        return "\n".join([*comments, *aligned([c.latex(labels, "&") for c in self.conditions if c.sides])])
+        rows = [c.latex(labels, "&") for c in self.conditions if c.sides]
+        rows += [
+            f"{latex_expression(Name(n), labels)} &= {latex_expression(e, labels)}" for n, e in self.where
+        ]
+        return "\n".join([*comments, *aligned(rows)])
 
     def to_json_dict(self) -> dict[str, object]:
         """Return the conditions in the schema ``symflex.stability/1``."""
         shown = [{"condition": str(c) if c.sides else None, "terms": c.terms} for c in self.conditions]
         document = {"of": self.of, "never": self.is_never, "on_axis": [*map(list, self.on_axis)]}
         document |= {"real": roots} if (roots := self.roots_at_rest) else {}
+        lines = {name: format_expression(e) for name, e in self.where}
+        document |= {"definitions": lines} if lines else {}
         return {"schema": "symflex.stability/1", **document, "conditions": shown}
 
 
@@ -150,14 +161,49 @@ def conditions(model: Model, of: str = POLES, tf: str | None = None) -> Conditio
     pairs = pick_pairs(model, [tf] if tf else [])
     if of != POLES:
         (derived,) = derive_all(model, pairs[:1])
-        return conditions_of(derived, f"zeros of {derived.name}", derived.num.factors)
+        opened = conditions_of(derived, f"zeros of {derived.name}", derived.num.factors)
+        return _shortest(opened, derived, lambda tf: tf.num.factors)
     from symflex.loops.over import seen_pair  # live pages ask for signs alone
 
     pair = seen_pair(model)
     (derived,) = derive_all(observed(model, pair[0]), [pair])
-    hidden = ((h.polynomial, h.multiplicity) for h in derived.hidden)
     loose = _of_outputs(model) if is_passive(model) else None
-    return conditions_of(derived, of, [*derived.den.factors, *hidden], loose)
+    opened = conditions_of(derived, of, _characteristic(derived), loose)
+    return opened if loose is not None else _shortest(opened, derived, _characteristic)
+
+
+def _characteristic(tf: TransferFunction) -> list[Factor]:
+    return [*tf.den.factors, *((h.polynomial, h.multiplicity) for h in tf.hidden)]
+
+
+def _shortest(
+    opened: Conditions, tf: TransferFunction, polynomials: Callable[[TransferFunction], Sequence[Factor]]
+) -> Conditions:
+    """Return conditions with definitions closed, as letters, where they say the same and are shorter."""
+    closed = ClosedDefinitions(UNASKED).of(tf) if opened.conditions and not opened.is_never else None
+    if closed is None or any(c.expression.name == "sqrt" for c in closed.constants):
+        return opened  # a root of a definition might be imaginary
+    if _powers(polynomials(closed)) != _powers(polynomials(tf)):
+        return opened  # some factors, or coefficients that vanish, are seen only so
+    try:
+        kept = conditions_of(closed, opened.of, polynomials(closed))
+    except BudgetError:
+        spend()
+        return opened
+    is_short = CLOSED * _read(kept) < _read(opened) and all(c.sides for c in kept.conditions)
+    return kept if is_short and len(kept.conditions) <= len(opened.conditions) else opened
+
+
+def _powers(polynomials: Sequence[Factor]) -> list[tuple[list[int], int]]:
+    """Return the powers of s in every factor, with its multiplicity."""
+    factors = ((f, n * times) for p, times in polynomials for f, n in irreducible_factors(p)[1])
+    return sorted((sorted({int(m[0]) for m in f.monoms()}), n) for f, n in factors if degree_in(f, 0))
+
+
+def _read(found: Conditions) -> float:
+    """Return the length of conditions and half of that of their definitions; of long ones that is large."""
+    sides = [length(*c.sides) if c.sides else MOST_TERMS for c in found.conditions]
+    return sum(sides) + length(*(e for _, e in found.where)) / 2
 
 
 def conditions_of(
@@ -194,7 +240,11 @@ def conditions_of(
     said = f"those of {stay} on the imaginary axis, all others {LEFT}" if on_axis else f"all {LEFT}"
     said = f"never all {LEFT}, which would require" if is_never else said + " exactly when" * bool(found)
     relations = tuple(relation for _, relation in found)
-    return Conditions(tf.model, of, f"{of}: {said}", relations, tuple(on_axis), is_never)
+    shown = [*signs.ring.used_in(f for f, _ in moving)] if on_axis else []
+    parts = [*map(Name, shown), *(side for r in relations for side in r.sides or ())]
+    lines = ((d.name, d.expression) for d in tf.model.definitions if d.name in signs.ring.index)
+    where = reachable(parts, lines)
+    return Conditions(tf.model, of, f"{of}: {said}", relations, tuple(on_axis), is_never, where)
 
 
 def aligned(rows: Sequence[str]) -> list[str]:
@@ -302,11 +352,29 @@ class Signs:
 
     @classmethod
     def of(cls, tf: TransferFunction) -> Signs:
-        """Return what a model assumes of its parameters; real roots and exponentials are positive."""
+        """Return what a model assumes of its parameters; real roots and exponentials are positive.
+
+        Definitions that are letters of the ring have the signs that follow from their formulas.
+        """
         roots = {c.generator for c in tf.constants if c.expression.name == "sqrt"}
         signed = frozenset(roots | {tf.ratio.ring.names[i] for i in tf.radicals.positive})
         loose = {p.name for p in tf.model.parameters if p.assume == "nonnegative"}
-        return cls(tf.ratio.ring, signed - loose, signed)
+        known = cls(tf.ratio.ring, signed - loose, signed)
+        for name, value in tf.definitions:
+            if name in known.ring.index and value.ring == known.ring and value.unit > 0:
+                factors = [f for f, _ in value.factors]
+                positive = frozenset([name] if all(map(known.is_positive, factors)) else [])
+                nonnegative = positive or frozenset([name] if all(map(known.is_sum, factors)) else [])
+                known = cls(known.ring, known.positive | positive, known.nonnegative | nonnegative)
+        return known
+
+    def is_sum(self, polynomial: fmpz_mpoly) -> bool:
+        """Tell whether all terms of a polynomial are positive or zero."""
+        names = self.ring.names
+        return all(
+            c > 0 and all(names[i] in self.nonnegative or e % 2 == 0 for i, e in m)
+            for m, c in terms_of(polynomial)
+        )
 
     def of_polynomial(self, polynomial: fmpz_mpoly, depth: int = SQUARES) -> int:
         """Return 1 where it is proved to be positive, -1 negative, and 0 where its sign is not known."""
@@ -316,8 +384,7 @@ class Signs:
         """Tell whether a polynomial is proved positive: by its terms, its coefficients, or as a quadratic."""
         names = self.ring.names
         terms = [([(names[i], e) for i, e in m], c) for m, c in terms_of(polynomial)]
-        is_sum = all(c > 0 and all(n in self.nonnegative or e % 2 == 0 for n, e in m) for m, c in terms)
-        if is_sum and any(all(n in self.positive for n, _ in m) for m, _ in terms):
+        if self.is_sum(polynomial) and any(all(n in self.positive for n, _ in m) for m, _ in terms):
             return True
         # Where one letter exceeds all later ones by far, the sign is that of the first term, or the last.
         if depth == 0 or len(terms) > LONGEST or not terms or terms[0][1] < 0 or terms[-1][1] < 0:

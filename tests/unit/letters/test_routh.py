@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+import sympy
 
 import symflex
 from symflex.errors import SymflexError
@@ -238,3 +239,43 @@ def test_json_and_latex_say_the_same():
         "T_1 + T_2 > K*T_1*T_2",
         "for positive values of all letters",
     ]
+
+
+BRAKE = {
+    "k_11": "k_1*cos(a)^2 + k_2*cos(b)^2",
+    "k_12": "k_1*sin(a)*cos(a) + k_2*sin(b)*cos(b)",
+    "k_22": "k_1*sin(a)^2 + k_2*sin(b)^2 + k_3",
+}
+"""Mode coupling by friction: k_12 may have either sign, k_11 is not negative, k_22 is positive."""
+
+
+def test_definitions_stay_closed_as_letters_of_the_signs_that_follow_from_their_formulas():
+    """By hand: z^2 + (k_11 + k_22)*z + k_11*k_22 - k_12*(k_12 - mu*k_3), z = m*s^2, has negative roots."""
+    rows = ["m*s^2*x + k_11*x + (k_12 - mu*k_3)*y = F", "m*s^2*y + k_12*x + k_22*y = 0"]
+    equations = {"unknowns": ["x", "y"], "equations": rows}
+    tables = {"definitions": BRAKE, "equations": equations, "inputs": {"F": {}}, "outputs": {"X": "x"}}
+    found = model_of("m k_1 k_2 k_3 mu a b", **tables).conditions()
+    texts = [str(c).replace("^", "**").split(" > ") for c in found.conditions]
+    ours = {sympy.expand(sympy.sympify(f"{left} - ({right})")) for left, right in texts}
+    k_11, k_12, k_22, k_3, mu = sympy.symbols("k_11 k_12 k_22 k_3 mu")
+    slope = k_12 * (k_12 - mu * k_3)
+    assert ours == {sympy.expand(k_11 * k_22 - slope), sympy.expand((k_11 - k_22) ** 2 + 4 * slope)}
+    assert [name for name, _ in found.where] == [*BRAKE]
+    assert "for positive values of all parameters" in str(found)
+
+
+@pytest.mark.parametrize(
+    ("formula", "expected"),
+    [
+        ("k_1 - k_2", ["k_1 > k_2"]),  # as short as the name and what it is
+        ("(k_1 - k_2)*(k_3*cos(a) + k_1*sin(a) - k_2) + k_1*k_3", ["c > 0"]),
+        ("k_1*cos(a)^2 + k_2", []),
+        ("(k_1 + k_2)/k_3", []),
+    ],
+)
+def test_no_sign_is_assumed_of_a_definition_that_may_be_negative(formula, expected):
+    """By hand: m*s^2 + b*s + c is stable where c > 0."""
+    signals = {"y": "u/(m*s^2 + b*s + c)"}
+    tables = {"definitions": {"c": formula}, "signals": signals, "inputs": {"u": {}}, "outputs": {"Y": "y"}}
+    found = model_of("m b k_1 k_2 k_3 a", **tables).conditions()
+    assert [str(c) for c in found.conditions] == expected
