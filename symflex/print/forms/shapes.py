@@ -83,9 +83,49 @@ def shaped(model: Model, form: PrintedForm, signs: SumSigns | None = None) -> Pr
         turned = _signed(form, signs.turning, model)
         made = min(made, turned, key=lambda f: _minus_signs(*_parts(f)))
     if counted := {Name(p.name) for p in model.parameters if p.cycles == 1}:
-        num, den = (rebuilt(e, lambda part: _in_radians(part, counted)) for e in (made.num, made.den))
+        num, den = (rebuilt(e, lambda part: _with_turns(part, counted)) for e in (made.num, made.den))
         made = replace(made, num=num, den=den)
     return made
+
+
+def _with_turns(part: Expression, counted: Collection[Expression]) -> Expression:
+    """Return a product with what is in Hz beside its 2 pi, and 0.8*pi before brackets in them."""
+    plain = _in_radians(part, counted)
+    if not isinstance(part, Product) or PI not in plain.children:
+        return plain
+    inside = _pi_inside(part, Fraction(1), 0, counted)
+    return plain if inside is None else min(plain, inside, key=_turns_read)
+
+
+def _turns_read(expression: Expression) -> tuple[int, int]:
+    """Return how many pi have another number than 2 before them, and the length."""
+    parts = nodes(expression)
+    twos = sum(isinstance(n, Product) and n.factors[:2] == (number(2), PI) for n in parts)
+    return parts.count(PI) - twos, length(expression)
+
+
+def _pi_inside(
+    part: Expression, scale: Fraction, turns: int, counted: Collection[Expression]
+) -> Expression | None:
+    """Return a part times a number and a power of pi, none of which is left without what is in Hz."""
+    if isinstance(part, Sum):
+        terms = [t for t in (_pi_inside(t, scale, turns, counted) for t in part.terms) if t is not None]
+        return sum_of(terms) if len(terms) == len(part.terms) else None
+    front, powers = powers_of(part)
+    front, left = front * scale, powers.pop(PI, 0) + turns
+    own = next((powers[b] for b in powers if b in counted and 0 < powers[b] <= left), 0)
+
+    def joined(number_in_front: Fraction, factors: Iterable[Expression]) -> Expression:
+        return _in_radians(product_of([number(number_in_front), power(PI, own), *factors]), counted)
+
+    is_short = own == left and _number_in(front, DIGITS) is not None
+    tried = [joined(front, (power(b, n) for b, n in powers.items()))] if is_short else []
+    for total in [b for b, n in powers.items() if isinstance(b, Sum) and n == 1]:
+        inside = _pi_inside(total, abs(front) / 2**own, left - own, counted)
+        if inside is not None:
+            factors = (inside if b is total else power(b, n) for b, n in powers.items())
+            tried.append(joined(Fraction(2**own if front > 0 else -(2**own)), factors))
+    return min(tried, key=_turns_read, default=None)
 
 
 def _in_radians(part: Expression, counted: Collection[Expression]) -> Expression:

@@ -400,6 +400,12 @@ SHAPES = {
         "K*(s^2 + 2*s + 4)/(s^4 + 11*s^3 + 24*s + K*(s^2 + 2*s + 4))"),
     "a resonance given in hertz, by powers of s": (
         "zeta = 0.1, f = '5 Hz'", "u/(s^2 + 2*zeta*f*s + f^2)", "1/(s^2 + 2*zeta*(2*pi*f)*s + (2*pi*f)^2)"),
+    # 1/s^2 - 0.6/D = (D - 0.6*s^2)/(s^2*D), D = s^2 + 2*z*w*s + w^2, w = 2*pi*f: 0.4 of s^2 is left.
+    "pi in front of brackets goes to the frequencies in hertz": (
+        "K = {}, z = 0.1, f = '5 Hz', f_l = '8 Hz'",
+        "K*(1/s^2 - 0.6/(s^2 + 2*z*f*s + f^2))*f_l/(s + f_l)*exp(-0.01*s)*u",
+        "2*pi*K*f_l*(0.4*s^2 + 2*z*(2*pi*f)*s + (2*pi*f)^2)*exp(-s/100)"
+        "/(s^2*(s^2 + 2*z*(2*pi*f)*s + (2*pi*f)^2)*(s + 2*pi*f_l))"),
     "a notch of typed damping": (
         "f = '60 Hz'", "(s^2 + 2*0.05*f*s + f^2)*u/(s^2 + 2*0.5*f*s + f^2)",
         "(s^2 + 0.2*pi*f*s + (2*pi*f)^2)/(s^2 + 2*pi*f*s + (2*pi*f)^2)"),
