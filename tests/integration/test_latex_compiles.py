@@ -121,6 +121,16 @@ def test_documents_of_models_of_every_kind_compile_without_a_warning(tmp_path):
     assert complaints_of_parts(tmp_path, parts, opening) == []
 
 
+@pytest.mark.slow
+def test_a_document_compiles_where_fonts_are_bitmaps_that_cannot_be_expanded(tmp_path):
+    model, tfs = derived("eppinger1988/two_mass")
+    document = latex_document(model, tfs, [print_form(tf) for tf in tfs])
+    (tmp_path / "paper.tex").write_text(
+        document.replace("lmodern.sty", "no-such-fonts.sty"), encoding="utf-8"
+    )
+    assert "Output written" in settled("pdflatex", tmp_path)
+
+
 FITTING = {
     88.0: ("sliding_free_beam", "clamped_clamped", "third order", "damped rod", "timoshenko_cantilever"),
     120.0: ("sliding_free_beam", "rayleigh beam", "rigid_body", "six_mass"),

@@ -46,9 +46,10 @@ _JUSTIFIED_MM: Final = 120.0
 _MARGIN_MM: Final = 20.0
 _A4_MM: Final = 210.0
 
+# Without lmodern the fonts may be bitmaps, which pdfTeX cannot expand.
 _PREAMBLE: Final = r"""\documentclass[10pt,a4paper]{article}
 \usepackage[T1]{fontenc}
-\IfFileExists{lmodern.sty}{\usepackage{lmodern}}{}
+\IfFileExists{lmodern.sty}{\usepackage{lmodern}}{\PassOptionsToPackage{expansion=false}{microtype}}
 \IfFileExists{microtype.sty}{\usepackage{microtype}}{}
 \usepackage[%stextwidth=%gmm,textheight=245mm]{geometry}
 \usepackage{amsmath}
