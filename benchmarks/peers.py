@@ -35,7 +35,7 @@ NESTED_SECTIONS: Final = (8, 10)
 EXPANDED_SECTIONS: Final = (5, 8)
 STOREYS: Final = 10
 POINTS: Final = 12
-"""Of gain and of delay, beside each other: what TDCpy finds roots at."""
+"""How many gains and how many delays TDCpy finds the roots at: every pair of them."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -134,7 +134,7 @@ class VaryingMatrices:
 
     @cached_property
     def _at_rest(self) -> tuple[float, ...]:
-        """By which power of e the solutions of each law grow at rest."""
+        """The power of e by which the solutions of each law grow at rest."""
         # Next to rest, as states in a chain have no scales of their own at s = 0.
         return tuple(law.growth_at(-HIGHEST_OCTAVE * PARTS, PARTS) for law in self.laws)
 

@@ -56,19 +56,17 @@ def truncated(tf: TransferFunction, order: int) -> tuple[TransferFunction, Print
     zero, s = Factored.number(plain, 0), Factored.generator(plain, "s")
     above, below = (sum((c * s**k for k, c in coefficients), zero) for coefficients in terms)
     ratio, _ = cancel(above, below)
-    coefficients = replace(
-        tf, reduced=ratio, closed=None, hidden=(), kernels=NO_KERNELS, parts=None, solve=None
-    )
-    form = (_stiffness(coefficients, terms[1]) if is_stiffness else None) or print_form(coefficients)
+    truncated = replace(tf, reduced=ratio, closed=None, hidden=(), kernels=NO_KERNELS, parts=None, solve=None)
+    form = (_stiffness(truncated, terms[1]) if is_stiffness else None) or print_form(truncated)
     what = "dynamic stiffness" if is_stiffness else "numerator and denominator"
     said = [f"exact {what} up to s^{order}"]
     facts: dict[str, object] = {"kind": "order", "order": order, "stiffness": is_stiffness}
     if any(p.value is None for p in tf.parameters):
         said.append("no error is known, as a parameter has no value")
-        return coefficients, replace(form, approximation=Approximation(tuple(said), facts))
-    before, after = bind(tf), bind(coefficients)
+        return truncated, replace(form, approximation=Approximation(tuple(said), facts))
+    before, after = bind(tf), bind(truncated)
     apart = distance(before, after, roots_of(before, after), (0.01, 0.1))
-    return coefficients, replace(form, approximation=Approximation((*said, *apart.said), facts | apart.facts))
+    return truncated, replace(form, approximation=Approximation((*said, *apart.said), facts | apart.facts))
 
 
 def _expanded(tf: TransferFunction, count: int) -> tuple[Factored, Factored]:

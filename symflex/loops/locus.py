@@ -241,8 +241,8 @@ def _as_far_as_proved(
 ) -> tuple[list[Branch], list[complex]]:
     """Return branches up to where poles accumulate, and the poles that they reach at the last gain.
 
-    Of a loop with kernels, poles beyond those proved at the last gain are not compared, nor those where poles
-    accumulate, which no search exhausts.
+    Poles of a loop with kernels are compared as far as they are proved at the last gain, and away from places
+    where they accumulate, which no search exhausts.
     """
     reach = max((abs(s) for s in _points(end.poles)), default=0.0) if is_endless else inf
     branches, reached = list[Branch](), list[complex]()

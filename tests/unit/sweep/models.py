@@ -34,14 +34,17 @@ u = {}
 Y = "y"
 """
 
-BEAM = """
+STEEL = """
 symflex = 1
 [parameters]
 E = "200 GPa"
 I = "4000 mm^4"
 rho = "7850 kg/m^3"
 A = "480 mm^2"
-l = "1.086 m"
+"""
+BEAM = (
+    STEEL
+    + """l = "1.086 m"
 m = { value = "1 kg", assume = "nonnegative" }
 [elements]
 arm   = { type = "beam", between = ["p", "q"], E = "E", I = "I", rho = "rho", A = "A", l = "l" }
@@ -52,6 +55,7 @@ F = { force = "p" }
 [outputs]
 V = "s*p"
 """
+)
 
 SLIDING_FREE = BEAM.replace('tip   = { type = "mass", at = "q", m = "m" }\n', "").replace(
     'm = { value = "1 kg", assume = "nonnegative" }\n', ""

@@ -10,16 +10,11 @@ from symflex.options import SweepOptions
 from symflex.sweep import plan_sweep, points
 from symflex.sweep.design import derived
 from symflex.sweep.points import RootSolver, solve_roots
-from tests.unit.sweep.models import BEAM, LOOP, TWO_RESONANCES
+from tests.unit.sweep.models import BEAM, LOOP, STEEL, TWO_RESONANCES
 
-DAMPED = """
-symflex = 1
-[parameters]
-E = "200 GPa"
-I = "4000 mm^4"
-rho = "7850 kg/m^3"
-A = "480 mm^2"
-l = "1 m"
+DAMPED = (
+    STEEL
+    + """l = "1 m"
 eta = "1e-5 s"
 b = { value = "2 N*s/m", assume = "nonnegative" }
 [elements]
@@ -31,6 +26,7 @@ F = { force = "q" }
 [outputs]
 X = "q"
 """
+)
 ROD = """
 symflex = 1
 [parameters]
