@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from matplotlib import style
-from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.mathtext import MathTextParser
 
@@ -20,6 +19,8 @@ from symflex.model.labels import GREEK
 from symflex.print.label import read_label
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from symflex.roots import PoleZeroMap
     from symflex.transfer import AnyTransferFunction
 
