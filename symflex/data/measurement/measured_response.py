@@ -22,6 +22,17 @@ SHARE_OF_MEDIAN = 0.02  # no line counts more than fifty times the median one, w
 
 
 @dataclass(frozen=True, eq=False)
+class Samples:
+    """Even samples of an output and of its input, as a record in time has them."""
+
+    step_s: float
+    output: npt.NDArray[np.float64]
+    input: npt.NDArray[np.float64] | None = None
+    # Which samples were lost: the values there are guesses. None if none were.
+    is_missing: npt.NDArray[np.bool_] | None = None
+
+
+@dataclass(frozen=True, eq=False)
 class MeasuredResponse:
     """A frequency response as an analyser estimates it, on increasing frequencies.
 
@@ -54,6 +65,8 @@ class MeasuredResponse:
         True when no phase was measured: that of the values belongs to a minimum-phase function.
     cut_off_s : float, optional
         Length [s] of the record of a step that was cut off, whose last sample stands for the final level.
+    samples : tuple of Samples
+        The records in time that it was estimated from.
 
     Notes
     -----
@@ -79,6 +92,7 @@ class MeasuredResponse:
     is_record: bool = field(default=False, repr=False)
     is_magnitude: bool = field(default=False, repr=False)
     cut_off_s: float | None = field(default=None, repr=False)
+    samples: tuple[Samples, ...] = field(default=(), repr=False)
 
     def __repr__(self) -> str:
         ends = f"{self.frequency_hz[0]:g} to {self.frequency_hz[-1]:g} Hz" if self.frequency_hz.size else "no"

@@ -1,0 +1,262 @@
+"""A record in time as a fit sees it: the spectrum of its samples, and what a pole adds to that, exactly.
+
+For samples ``y_k = y(k h)``, k = 0 ... n - 1, let ``Y`` be their discrete Fourier transform and ``z = exp(j
+omega h)`` on its lines. A pole p of a plant, ``1/(s - p)``, takes an input that is held between samples, or
+joined by lines, from one sample to the next by ``E = exp(p h)``. Therefore, without a window or leakage,
+
+    Y = H U + c/(1 - E/z),    H = g_0 + g_1/z + g_2/z^2/(1 - E/z),
+
+where g_0, g_1, g_2 are the responses to one sample of the input, delayed by any fraction of h, and c is free:
+what the record begins with less what it ends with (Pintelon &
+Schoukens, System Identification, 2nd ed. 2012, section 6.3). By Parseval's theorem, least squares on these
+lines are those of the output's error in time. Noise of any colour weighs lines, and a band is some of them.
+
+    held, no delay     g = (0, (E - 1)/p, E (E - 1)/p): H = (E - 1)/p/(z - E)
+    a steady sine      c/(1 - exp(j omega_0 h)/z), no input
+    offset, drift      the line at 0 Hz, which is left out; 1/(1 - 1/z)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+from scipy.linalg import solve_toeplitz
+
+from symflex.data.fitting.resonances import Complex, Mask, Real
+from symflex.data.measurement.measured_response import Samples
+
+SMALL: Final = 0.5  # size of an argument below which a series has more digits than its closed form
+TERMS: Final = 18  # of that series: 0.5^18/21! is far below rounding
+FORGOTTEN: Final = 37.0  # exp(-37) is the rounding of 1
+MOST_REGRESSORS: Final = 30  # of a disturbance whose colour is estimated
+SAMPLES_EACH: Final = 12  # samples that each of these takes at least
+HELD: Final = 0.5  # share of samples equal to those before them from which an input is held
+
+
+@dataclass(frozen=True, eq=False)
+class SampledRecord:
+    """The spectrum of an output and of its input on the lines of a band; variances are those of samples."""
+
+    step_s: float
+    output: Real  # shape (n,)
+    # shape (lead + n,): The input, from so many samples before the first of the output; None without.
+    input: Real | None
+    lead: int = 0
+    is_joined: bool = False  # whether lines join the samples of the input; else each is held to the next
+    is_at_rest: bool = False  # whether nothing moved before the first sample, and the input was as there
+    lines: Mask | None = None  # which of the lines above 0 Hz and below half the sampling rate; None for all
+    noise: Real | None = None  # shape (lines,): standard deviation of a line; None for 1
+    measured: Mask | None = None  # which samples of the output there are; the others hold a guess
+    _inputs: dict[int, Complex] = field(default_factory=dict, repr=False)
+
+    @staticmethod
+    def of(samples: Samples, *, is_joined: bool, is_at_rest: bool = False, lead: int = 0) -> SampledRecord:
+        """Return the record of samples; without rest, the input must lead by the delay in whole samples."""
+        y, u = samples.output, samples.input
+        measured = None if samples.is_missing is None else ~samples.is_missing
+        if u is not None and is_at_rest:
+            u = np.concatenate((np.full(lead, u[0]), u)) - u[0]
+        elif lead:
+            y, measured = y[lead:], None if measured is None else measured[lead:]
+        return SampledRecord(samples.step_s, y, u, lead, is_joined, is_at_rest, measured=measured)
+
+    @property
+    def size(self) -> int:
+        """How many samples of the output there are."""
+        return self.output.size
+
+    @cached_property
+    def omega(self) -> Real:
+        """The lines [rad/s]."""
+        every = 2 * np.pi / (self.size * self.step_s) * np.arange(1, (self.size - 1) // 2 + 1)
+        return np.asarray(every if self.lines is None else every[self.lines], np.float64)
+
+    @cached_property
+    def back(self) -> Complex:
+        """``1/z`` on the lines."""
+        return np.asarray(np.exp(-1j * self.omega * self.step_s), np.complex128)
+
+    def spectrum(self, values: Real) -> Complex:
+        """Return the transform of samples of the output's time on the lines."""
+        every = np.fft.rfft(values)[1 : (self.size - 1) // 2 + 1] / np.sqrt(self.size)
+        return np.asarray(every if self.lines is None else every[self.lines], np.complex128)
+
+    def samples(self, spectrum: Complex) -> Real:
+        """Return the samples that a spectrum on the lines stands for; it is nothing elsewhere."""
+        every = np.zeros(self.size // 2 + 1, np.complex128)
+        every[1 : (self.size - 1) // 2 + 1][slice(None) if self.lines is None else self.lines] = spectrum
+        return np.asarray(np.fft.irfft(every, self.size) * np.sqrt(self.size), np.float64)
+
+    @cached_property
+    def output_lines(self) -> Complex:
+        """The spectrum of the output."""
+        return self.spectrum(self.output)
+
+    def input_lines(self, delay: int = 0) -> Complex:
+        """Return the spectrum of the input, delayed by whole samples."""
+        if delay not in self._inputs:
+            self._inputs[delay] = self.spectrum(self._delayed(delay))
+        return self._inputs[delay]
+
+    def _delayed(self, delay: int) -> Real:
+        assert self.input is not None
+        first = max(self.lead - delay, 0)
+        return self.input[first : first + self.size]
+
+    def weighted(self, spectrum: Complex) -> Real:
+        """Return real numbers of variance 1, if the noise is right: shape (k, ...) to (2 k, ...)."""
+        noise = 1.0 if self.noise is None else self.noise.reshape(-1, *[1] * (spectrum.ndim - 1))
+        scaled = np.sqrt(2) * spectrum / noise
+        return np.concatenate((scaled.real, scaled.imag))
+
+    def drift(self) -> Complex:
+        """Return the spectrum of a straight line, up to a factor; its mean is not on the lines."""
+        return np.asarray(1 / (1 - self.back) / np.sqrt(self.size), np.complex128)
+
+    def at_first_sample(self) -> Complex:
+        """Return the spectrum of one sample, the first: it depends on an input that was not recorded."""
+        return np.full(self.omega.size, 1 / np.sqrt(self.size), np.complex128)
+
+    def pole(self, p: complex, delay_s: float = 0.0) -> PoleSpectrum:
+        """Return what a pole ``1/(s - p)`` adds to the spectrum of the output, with derivatives."""
+        h, back, root = self.step_s, self.back, np.sqrt(self.size)
+        E = np.exp(p * h)
+        free = 1 / (1 - E * back)
+        by_pole = h * E * back * free**2
+        if self.input is None:
+            return PoleSpectrum(None, None, None, free / root, by_pole / root)
+        whole, fraction = divmod(delay_s / h, 1)
+        g, g_by_pole, g_by_delay = _weights(p, h, fraction, is_joined=self.is_joined)
+        u = self.input_lines(int(whole))
+        tail = back**2 * free
+        driven = (g[0] + g[1] * back + g[2] * tail) * u
+        driven_by_pole = (
+            g_by_pole[0] + g_by_pole[1] * back + g_by_pole[2] * tail + g[2] * back**2 * by_pole
+        ) * u
+        driven_by_delay = (g_by_delay[0] + g_by_delay[1] * back + g_by_delay[2] * tail) * u
+        if self.is_at_rest:
+            end, end_by_pole, end_by_delay = self._end(p, int(whole), g, g_by_pole, g_by_delay)
+            last = self._delayed(int(whole))[-1]
+            wrap = (g[2] - E * g[1]) * last
+            wrap_by_pole = (g_by_pole[2] - E * g_by_pole[1] - h * E * g[1]) * last
+            wrap_by_delay = (g_by_delay[2] - E * g_by_delay[1]) * last
+            rest = (end + back * wrap) / root
+            driven = driven - free * rest
+            driven_by_pole = driven_by_pole - by_pole * rest
+            driven_by_pole -= free * (end_by_pole + back * wrap_by_pole) / root
+            driven_by_delay = driven_by_delay - free * (end_by_delay + back * wrap_by_delay) / root
+        return PoleSpectrum(driven, driven_by_pole, driven_by_delay, free / root, by_pole / root)
+
+    def _end(
+        self, p: complex, delay: int, g: Complex, by_pole: Complex, by_delay: Complex
+    ) -> tuple[complex, complex, complex]:
+        """Return the state after the last sample that began at rest, and its derivatives."""
+        u = self._delayed(delay)[::-1]
+        last, u = u[0], u[1:]
+        decay = -p.real * self.step_s
+        u = u[: int(min(FORGOTTEN / decay, u.size)) + 1] if decay > 0 else u
+        m = np.arange(u.size)
+        power = np.exp(p * self.step_s * m)
+        total, moment = complex(power @ u), self.step_s * complex((m * power) @ u)
+        return (
+            g[1] * last + g[2] * total,
+            by_pole[1] * last + by_pole[2] * total + g[2] * moment,
+            by_delay[1] * last + by_delay[2] * total,
+        )
+
+    def direct(self, delay_s: float = 0.0) -> tuple[Complex, Complex]:
+        """Return the spectrum of the delayed input itself as the output samples it, and by the delay."""
+        whole, fraction = divmod(delay_s / self.step_s, 1)
+        u = self.input_lines(int(whole))
+        if self.is_joined:
+            step = (self.back - 1) * u
+            return u + fraction * step, step / self.step_s
+        return (self.back * u if fraction else u), np.zeros_like(u)
+
+    def with_noise(self, residual: Complex) -> SampledRecord:
+        """Return the record with the noise that a residual shows: autoregressive, or white in a band."""
+        if self.lines is not None:
+            level = np.sqrt(np.mean(np.abs(residual) ** 2))
+            return replace(self, noise=np.full(self.omega.size, max(level, np.finfo(float).tiny)))
+        values = self.samples(residual)
+        coefficients, variance = autoregression(values if self.measured is None else values[self.measured])
+        response = sum(a * self.back**k for k, a in enumerate(coefficients))
+        return replace(self, noise=np.sqrt(variance) / np.abs(np.asarray(response)))
+
+    def filled(self, residual: Complex) -> SampledRecord:
+        """Return the record with samples that are missing replaced by those of the model."""
+        if self.measured is None:
+            return self
+        model = self.output - self.samples(residual)
+        return replace(self, output=np.where(self.measured, self.output, model))
+
+
+@dataclass(frozen=True, slots=True)
+class PoleSpectrum:
+    """What a pole of residue 1 adds to the spectrum of an output; None without an input."""
+
+    driven: Complex | None  # by the input
+    driven_by_pole: Complex | None
+    driven_by_delay: Complex | None
+    free: Complex  # by what the record begins with: exp(p t) on its samples
+    free_by_pole: Complex
+
+
+def is_held(values: Real) -> bool:
+    """Return whether an input shows that it is held between samples: it often stays as it was."""
+    return bool(np.mean(np.diff(values) == 0) > HELD)
+
+
+def autoregression(values: Real, most: int = MOST_REGRESSORS) -> tuple[Real, float]:
+    """Return the coefficients, from 1 on, that whiten values, and the variance of what is left."""
+    # By the equations of Yule and Walker; the order is that of the lowest BIC.
+    n = values.size
+    most = min(most, n // SAMPLES_EACH)
+    spectrum = np.abs(np.fft.rfft(values, 2 * n)) ** 2
+    correlation = np.fft.irfft(spectrum)[: most + 1] / n
+    if not correlation[0] > 0:
+        return np.ones(1), float(np.finfo(float).tiny)
+    best = (n * np.log(correlation[0]), np.ones(1), float(correlation[0]))
+    for order in range(1, most + 1):
+        ahead = solve_toeplitz(correlation[:order], correlation[1 : order + 1])
+        variance = float(correlation[0] - ahead @ correlation[1 : order + 1])
+        if not variance > 0:
+            break
+        bic = n * np.log(variance) + order * np.log(n)
+        if bic < best[0] - 2:
+            best = (bic, np.append(1.0, -ahead), variance)
+    return best[1], best[2]
+
+
+def _weights(p: complex, h: float, fraction: float, *, is_joined: bool) -> list[Complex]:
+    """Return the response to one sample of the input after 0, 1, 2 steps, by the pole, and by the delay."""
+    # Held: differences of the step response s(t). Joined: second differences of that to a ramp, r(t).
+    ages = h * (np.arange(1, 4 if is_joined else 3) - fraction)
+    first, second, third = _phi(np.asarray(p * ages, np.complex128))
+    if is_joined:
+        of_ages = (ages**2 * second, ages**3 * (second - 2 * third), -ages * first)
+        return [np.asarray(np.diff([0.0, 0.0, *x], 2) / h, np.complex128) for x in of_ages]
+    of_ages = (ages * first, ages**2 * (first - second), -np.exp(p * ages))
+    return [np.asarray(np.diff([0.0, 0.0, *x]), np.complex128) for x in of_ages]
+
+
+def _phi(x: Complex) -> tuple[Complex, Complex, Complex]:
+    """Return ``phi_1 = (e^x - 1)/x``, ``phi_2 = (phi_1 - 1)/x`` and ``phi_3 = (phi_2 - 1/2)/x``.
+
+    >>> [one.round(6).tolist() for one in _phi(np.array([0j, 1 + 0j]))[:2]]
+    [[(1+0j), (1.718282+0j)], [(0.5+0j), (0.718282+0j)]]
+    """
+    x = np.asarray(x, np.complex128)
+    is_small = np.abs(x) < SMALL
+    far = np.where(is_small, 1.0, x)
+    closed = (((np.expm1(far) / far) - 1) / far - 0.5) / far
+    series, term = np.zeros_like(x), np.full_like(x, 1 / 6)
+    near = np.where(is_small, x, 0.0)
+    for k in range(TERMS):
+        series, term = series + term, term * near / (k + 4)
+    third: Complex = np.asarray(np.where(is_small, series, closed), np.complex128)
+    second: Complex = np.asarray(0.5 + x * third, np.complex128)
+    return np.asarray(1 + x * second, np.complex128), second, third
