@@ -9,4 +9,4 @@ from symflex.quantities.characters import (
 )
 from symflex.quantities.dimension import DIMENSIONLESS, Dimension
 from symflex.quantities.quantity import Quantity, looks_like_quantity, parse_quantity, parse_unit, unit_of
-from symflex.quantities.units import Unit, unit_doubt, unit_named, unit_slip
+from symflex.quantities.units import WRITTEN_OUT, Unit, unit_doubt, unit_named, unit_slip

@@ -221,8 +221,8 @@ PLAIN_UNITS: Final[dict[str, Unit]] = {
 
 UNITS: Final[dict[str, Unit]] = PREFIXABLE_UNITS | PLAIN_UNITS
 
-_INSTEAD: Final[dict[str, str]] = {
-    written: f"did you mean '{meant}'?"
+WRITTEN_OUT: Final[dict[str, str]] = {
+    written: meant
     for meant, many in {
         "s": "sec secs second seconds",
         "ms": "msec msecs",
@@ -270,7 +270,9 @@ _INSTEAD: Final[dict[str, str]] = {
         "Btu": "BTU",
     }.items()
     for written in many.split()
-} | {
+}
+"""Units by other words for them, which a specification may not have."""
+_INSTEAD: Final = {written: f"did you mean '{meant}'?" for written, meant in WRITTEN_OUT.items()} | {
     "G": "a prefix needs a unit, as in 'GPa'; a gauss is 0.1 mT, or 'gauss'",
     "Arms": "write it in 'A': an rms ampere is sqrt(2) A at the peak",
     "Vrms": "write it in 'V': an rms volt is sqrt(2) V at the peak",

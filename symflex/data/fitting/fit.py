@@ -35,6 +35,7 @@ from symflex.data.fitting.problem import FitProblem, fit_problem
 from symflex.data.fitting.resonances import LOGARITHMIC, UNITS, Complex, Free, Mask, Resonances, Values, Whole
 from symflex.data.fitting.starts import with_delays
 from symflex.data.measurement import MeasuredResponse
+from symflex.data.measurement.measured_response import ratio_of_units
 from symflex.errors import DataError, Diagnostic, FitError, no_such, refused
 from symflex.options import FitOptions
 
@@ -128,6 +129,13 @@ class ResonanceFit:
         """Return which lines of a response were left out of the fit, because they are wild."""
         line = self.problem.lines[response]
         return np.flatnonzero(~np.isin(line.every.omega, line.omega))
+
+    def gain_unit(self, response: int) -> str:
+        """Return the unit of a response's gain beside its base, or power of s; empty where unknown."""
+        base, unit = self.bases[response], self.measured[response].unit
+        if base.path:
+            return ratio_of_units(unit, base.unit)
+        return unit if not base.slope or not unit else ratio_of_units(unit, f"1/s^{base.slope}")
 
     def values(self, response: int, resonances: Resonances | None = None) -> Complex:
         """Return the fitted (or another) model on the lines of one response, without the window's effect."""

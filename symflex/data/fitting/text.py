@@ -62,7 +62,10 @@ def _zeros(fit: ResonanceFit, r: int) -> Passage:
     modes, errors, free = fit.resonances, fit.standard_errors(), fit.problem.free
     lines = [f"{INDENT}zeros{fit.of_response(r)}"]
     if free.gain:
-        lines.append(f"{INDENT}gain {modes.gain[r]:.6g}, standard error {errors.gain[r]:.2g}")
+        unit = fit.gain_unit(r)
+        lines.append(
+            f"{INDENT}gain {modes.gain[r]:.6g} {unit}".rstrip() + f", standard error {errors.gain[r]:.2g}"
+        )
     if free.lag:
         lines.append(f"{INDENT}lag of the sensor {modes.lag[r]:.4g} s, standard error {errors.lag[r]:.2g} s")
     if free.delay:
@@ -184,7 +187,11 @@ def _response_json(fit: ResonanceFit, r: int) -> dict[str, object]:
         "unit": measured.unit,
         "base": {"spec": base.path, "tf": base.tf} if base.path else None,
         "slope": None if base.path else base.slope,
-        "gain": {"value": float(modes.gain[r]), "standard_error": _finite(float(errors.gain[r]))},
+        "gain": {
+            "value": float(modes.gain[r]),
+            "standard_error": _finite(float(errors.gain[r])),
+            "unit": fit.gain_unit(r),
+        },
         "lag": {"value": float(modes.lag[r]), "standard_error": _finite(float(errors.lag[r]))},
         "delay": {"value": float(modes.delay[r]), "standard_error": _finite(float(errors.delay[r]))},
         "zeros": [p | {"real_of_opposite_sign": bool(w < 0)} for p, w in zip(zeros, omega, strict=True)],

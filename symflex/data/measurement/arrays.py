@@ -23,9 +23,10 @@ from symflex.data.measurement.array_files import (
     require,
 )
 from symflex.data.measurement.column_meaning import ColumnMeaning, DataColumn, columns_asked, meaning_of
+from symflex.data.measurement.column_names import SECONDS
 from symflex.data.measurement.columns import CROSS, Assembled, assembled, names_of, unit_by_round_ends
 from symflex.data.measurement.isolated import read_isolated
-from symflex.data.measurement.likely_readings import WITHOUT_AXIS, WITHOUT_TIME, ask, option_in_time
+from symflex.data.measurement.likely_readings import WITHOUT_AXIS, WITHOUT_TIME, ask, option_in_time, signals
 from symflex.data.measurement.measured_response import (
     MAX_BYTES,
     MAX_RESPONSES,
@@ -182,7 +183,7 @@ def responses_of(arrays: Arrays, name: str, stem: str, asked: str = "") -> tuple
     # with the frequency nearest above it. A matrix alone has columns: the frequency, then values. ``asked``
     # names arrays (``f=freq,h=G``) or columns of a matrix, as ``--columns`` does. Messages call the file
     # ``name``.
-    arrays = _with_axes(arrays)
+    arrays = _with_parts(with_axes(arrays))
     if "=" in asked:
         arrays = _renamed(arrays, asked, name)
     matrix = matrix_of(arrays)
@@ -207,15 +208,33 @@ def responses_of(arrays: Arrays, name: str, stem: str, asked: str = "") -> tuple
     return tuple(responses) if responses else _from_unknown(arrays, name, stem)
 
 
-def _with_axes(arrays: Arrays) -> Arrays:
-    """Return arrays with the frequencies that structures of Testlab tell by start and increment."""
+def with_axes(arrays: Arrays) -> Arrays:
+    """Return arrays with the axes that structures of Testlab tell by start and increment."""
+    # Signals in time become a sampling time and channels, called as they are; of responses frequencies are
+    # added.
     with_axes = dict(arrays)
+    timed: dict[str, Array] = {}
     for stem in [key.removesuffix(".x_values.increment") for key in arrays if key.endswith(".increment")]:
         parts = ("x_values.start_value", "x_values.increment", "y_values.values")
         start, step, values = (arrays.get(f"{stem}.{part}", np.empty(0)) for part in parts)
-        if start.size == step.size == 1 and values.size and {start.dtype.kind, step.dtype.kind} <= set("fiu"):
+        if start.size != 1 or step.size != 1 or not values.size or values.dtype.kind not in "fciu":
+            continue
+        words = ("x_values.quantity.label", "y_values.quantity.label", "function_record.name")
+        axis, unit, title = (_word(arrays.get(f"{stem}.{word}", np.empty(0))) for word in words)
+        if axis.lower() in SECONDS or (not axis and values.dtype.kind != "c"):
+            called = (title or stem).replace(".", " ")
+            called = f"{stem} {called}" if called in timed else called
+            unit = f" [{'g_n' if unit == 'g' else unit}]" * bool(unit)  # an acceleration
+            timed |= {called + unit: values, "dt": step * float(SECONDS.get(axis.lower(), 1))}
+        else:
             lines = start.item() + step.item() * np.arange(max(values.shape))
             with_axes[f"{stem}.y_values.frequency_hz"] = lines
+    return timed or with_axes
+
+
+def _with_parts(arrays: Arrays) -> Arrays:
+    """Return arrays with the complex values that tables of two columns are, and their frequencies."""
+    with_axes = dict(arrays)
     tables = {k: a for k, a in arrays.items() if a.shape[1:] == (2,) and a[2:].size}
     tables = {k: a for k, a in tables.items() if _meaning(k.rpartition(".")[2].lower()).kind == "complex"}
     beside = {k: a for k, a in tables.items() if a.dtype.kind == "c" and _goes_up(a[:, 0])}
@@ -402,8 +421,10 @@ def _from_unknown(arrays: Arrays, name: str, stem: str) -> tuple[MeasuredRespons
         if not (named or complexes) and (time := rising.keys() & {"t", "time", "T", "Time"}):
             hint = f"of a time record, one channel each: --columns t={min(time)},u=NAME,y=NAME"
         key, matrix = largest_matrix(arrays)
-        timed = option_in_time(list(matrix.T)) if key else ""
-        timed = f"{timed} in '{key}'" if timed else WITHOUT_TIME.format("u=NAME,y=NAME,dt=SECONDS")
+        columns, alone = list(matrix.T), "u=NAME,y=NAME,dt=SECONDS"
+        alone = f"{signals(columns, ',dt=SECONDS')}, columns of '{key}'" if columns[1:] else alone
+        timed = option_in_time(columns) if columns else ""
+        timed = f"{timed} in '{key}'" if timed else WITHOUT_TIME.format(alone)
         alone = WITHOUT_AXIS if complexes else f"{timed}; {WITHOUT_AXIS}"
         raise DataError(Diagnostic("SF602", message, None, hint if rising else alone))
     ((f, h),) = pairs

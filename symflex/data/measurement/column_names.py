@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Final
 
 import numpy as np
@@ -44,6 +45,16 @@ PHASE_UNITS: Final = dict.fromkeys(_DEGREES, np.pi / 180) | dict.fromkeys(
 )
 _LEVELS: Final = ("db", "дб", "decibel")
 UNITS: Final = frozenset((*FREQUENCY_UNITS, *PHASE_UNITS, *_LEVELS, *OHMS))
+_TIMES: Final = {
+    Fraction(1): "s sec secs second seconds sekunde sekunden",
+    Fraction(1, 10**3): "ms msec millis millisecond milliseconds",
+    Fraction(1, 10**6): "us usec \u00b5s \u03bcs micros microsecond microseconds",
+    Fraction(1, 10**9): "ns nanosecond nanoseconds",
+    Fraction(60): "min mins minute minutes minuten",
+    Fraction(3600): "h hr hrs hour hours stunde stunden",
+}
+SECONDS: Final = {word: factor for factor, words in _TIMES.items() for word in words.split()}
+"""Words for units of time, and what they are in seconds."""
 FACTORS: Final = {
     "frequency": FREQUENCY_UNITS | {"rad": FREQUENCY_UNITS["rad/s"]},
     "omega": FREQUENCY_UNITS | dict.fromkeys(("rad", "1/s", "s^-1", ""), FREQUENCY_UNITS["rad/s"]),
@@ -52,6 +63,8 @@ FACTORS: Final = {
 """Units of each kind, and what they are in Hz or radians."""
 IN_OR_OUT = re.compile(r"(?:v|u|i|signal|voltage|ch\w?)?[ _.(]*(in|out)(?:put)?\)?", re.I)
 """Labels of what goes in and what comes out: Vin, V(out), u_in, Output."""
+AT_ENDS = re.compile(r"(?:[vu]|ch|channel|kanal)[ _]?(?:([1ei])|([2ao]))", re.I)
+"""Amplitudes at both ends of a two-port: V1 and V2, Ue and Ua, Vi and Vo, CH1 and CH2."""
 OTHER_SIZE = re.compile(r"squared|(?:\||mag\w*)\s*(?:\^2|²)|^ln\b|[([]\s*(?:np|nepers?)\s*[])]", re.I)
 """Names of squares and natural logarithms of magnitudes, which are no magnitudes."""
 
@@ -93,6 +106,7 @@ SPELLINGS: Final = (
     NameRow("phase ", "\u2220", "\u2220H1 (rad)", "phase of H1 in rad", "reports"),
     NameRow("°", "Â°", "Phase (Â°)", "phase in ° times 0.01745", "UTF-8 that was read as Latin-1"),
     NameRow("inphase", r"(?<![^\W\d_])in[-_]phase(?![^\W\d_])", "In-Phase (V)", "real in V", "lock-ins"),
+    NameRow("| ", r"\|(?=[\[(])", "|H1|[V]", "magnitude of H1 in V", "tables of a bench"),
     NameRow(r"mag \1", r"\|([^|hz]|[^|]{2,})\|", "|H1| (V)", "magnitude of H1 in V", "scripts"),
     NameRow("db", r"\b[vi]db(?=\()", "VDB(out)", "magnitude of out in dB, decibel", "SPICE"),
     NameRow("phase", r"\b(?:[vi]p(?=\()|p(?=\([vi]\())", "VP(out) [rad]", "phase of out in rad", "SPICE"),
@@ -124,6 +138,8 @@ UNIT_ENDS: Final = (
     NameRow("", rf"(?:[\s_/,:.]|\bin |(?<=\w\d)(?=d))\s*({_SUFFIX})\s*$", "phase_rad", "phase in rad",
             "scripts"),
     NameRow("", r"(?<=\S)\s+/\s+(\S+)\s*$", "Re / mV", "real in mV", "potentiostats"),
+    NameRow("", r"(?:(?<=^[uv][12eaio])|(?<=^[uv]_[12eaio]))/(m?V)$", "V_1/V", "magnitude of V_1 in V",
+            "tables of a bench"),
     NameRow("", r"^(deg)(?=[:(])", "deg:H1", "phase of H1 in deg times 0.01745", "networks"),
 )  # fmt: skip
 """Where a unit without brackets is: the first row that is found."""
@@ -147,8 +163,10 @@ MEANINGS: Final = (
             unit=rf"(?!{_DB}$).*"),
     NameRow("", "", "phase margin (rad)", "nothing of margin in rad", "reports",
             words="std stdev sd sigma err unc uncertainty var variance snr thd margin"),
-    NameRow("magnitude", rf"^{_EDGE}{IN_OR_OUT.pattern}{_EDGE}$", "Vin (V)", "magnitude of Vin in V",
+    NameRow("magnitude", rf"^{_EDGE}(?:{IN_OR_OUT.pattern}){_EDGE}$", "Vin (V)", "magnitude of Vin in V",
             "oscilloscopes", of=""),
+    NameRow("magnitude", rf"^{_EDGE}[vu]_?[12eaio]{_EDGE}$", "V1 (V)", "magnitude of V1 in V",
+            "tables of a bench", of=""),
 )  # fmt: skip
 """What a name of a kind is by its words and its unit, one row after the other."""
 UNITS_IN_WORDS: Final = (

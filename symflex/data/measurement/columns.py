@@ -20,9 +20,23 @@ import numpy as np
 import numpy.typing as npt
 
 from symflex.data.measurement.column_meaning import ColumnMeaning, DataColumn, counts, size_of
-from symflex.data.measurement.column_names import FREQUENCY_UNITS, IN_OR_OUT, KINDS, OHMS, PHASE_UNITS
+from symflex.data.measurement.column_names import (
+    AT_ENDS,
+    FREQUENCY_UNITS,
+    IN_OR_OUT,
+    KINDS,
+    OHMS,
+    PHASE_UNITS,
+)
 from symflex.data.measurement.likely_readings import MOST_LISTED, UNDECIDED, ask
-from symflex.data.measurement.measured_response import MAX_ERRORS, MAX_RESPONSES, are_few, unit_of
+from symflex.data.measurement.measured_response import (
+    MAX_ERRORS,
+    MAX_RESPONSES,
+    are_few,
+    in_si,
+    ratio_of_units,
+    unit_of,
+)
 from symflex.data.measurement.minimum_phase import (
     FEWEST_TO_DECIDE,
     WRAPPED,
@@ -45,6 +59,7 @@ DECADE: Final = 10.0  # ratio of the largest and smallest of positive numbers up
 ROUNDED_COHERENCE: Final = 1.01  # up to which coherence was rounded upwards
 FILLED: Final = 0.95
 SAME_BAND: Final = 0.5  # share of each sweep's lines in the band common to all; with less, they are segments
+SWEEPS_APART: Final = 0.01  # relative deviation from which sweeps with other values are no repetitions
 SAME_FREQUENCY: Final = 1e-3  # relative distance up to which two columns hold the same frequency
 SAME_PHASE: Final = 1e-2  # median difference [rad] of one phase in degrees and in radians
 UNLIKE, CLEARLY = 0.1, 4.0  # mean of 1 - cos of phases that are alike; how much closer one has to be
@@ -80,7 +95,7 @@ def assembled(
     """Return the responses that columns make, and what was guessed, as a phase that is not there."""
     guesses: list[str] = []
     columns = _with_frequency(list(columns), file, header, guesses, is_asked=is_asked)
-    columns = _over_input(columns, guesses)
+    columns = [_in_hertz(c, columns) for c in _over_input(columns, guesses)]
     crossed = next((c for c in columns if CROSS.fullmatch(c.meaning.label) and c.meaning.kind), None)
     if crossed is not None and not is_asked:
         message = f"column '{crossed.name[:40]}' is named like a cross spectrum, which is not a response"
@@ -108,7 +123,7 @@ def assembled(
                 made.append(Assembled(label, lines, values, shares, unit, kept, is_magnitude))
     if not made:
         raise DataError(_missing(columns, file, header))
-    settings = [c.numbers.real for c in columns if not c.meaning.kind]
+    settings = [c.numbers.real for c in columns if id(c) not in used]
     made = [sweep for m in made for sweep in _sweeps(m, settings, guesses)]
     made = [m for m in made if np.any(m.values)] or made  # memories of analysers that contain nothing
     if len(made) > MAX_RESPONSES:
@@ -132,7 +147,8 @@ def assembled(
 def _sweeps(one: Assembled, settings: Sequence[Real], guesses: list[str]) -> list[Assembled]:
     """Return the sweeps of a response that goes through its band more than once."""
     # Those of one direction and the same frequencies are averaged, unless another column has a setting that
-    # changed; others are kept apart, since a response may depend on the direction.
+    # changed, or they differ by more than noise; others are kept apart, since a response may depend on the
+    # direction.
     lines, starts = one.frequency_hz, [0]
     ways = np.sign(np.diff(lines))
     for turn in (np.flatnonzero(np.diff(ways)) + 1).tolist():
@@ -151,6 +167,9 @@ def _sweeps(one: Assembled, settings: Sequence[Real], guesses: list[str]) -> lis
         alike = (k for k in alike if parts[k].shape == part.shape)
         first = next((k for k in alike if np.allclose(parts[k], part, SAME_FREQUENCY, 0)), i)
         groups.setdefault(first, []).append(runs[i])
+    for k in [k for k, same in groups.items() if _differ(np.array([one.values[run] for run in same]))]:
+        groups |= {runs.index(run): [run] for run in groups[k]}
+    groups = dict(sorted(groups.items()))
     is_both_ways = sorted(ways[runs[k].start] for k in groups) == [-1, 1]
     made = []
     for number, (k, same) in enumerate(groups.items(), 1):
@@ -170,6 +189,14 @@ def _sweeps(one: Assembled, settings: Sequence[Real], guesses: list[str]) -> lis
     apart = ", or kept apart: " + ", ".join(m.label for m in made) if len(made) > 1 else ""
     guesses.append(f"{len(runs)} sweeps: those with the same frequencies are averaged{apart}")
     return made
+
+
+def _differ(sweeps: Complex) -> bool:
+    """Return whether neighbouring lines of sweeps are off their mean alike, as those of noise are not."""
+    off = (sweeps - sweeps.mean(axis=0)) / np.abs(sweeps.mean(axis=0))
+    power = float(np.nanmean(np.abs(off) ** 2))
+    alike = float(np.nanmean((off[:, 1:] * off[:, :-1].conj()).real))
+    return power > SWEEPS_APART**2 and alike > power / 2
 
 
 def _below(column: DataColumn, rows: slice) -> DataColumn:
@@ -225,6 +252,8 @@ def _over_input(columns: list[DataColumn], guesses: list[str]) -> list[DataColum
     """Return columns with what comes out over what goes in, where both are sizes without phases."""
     sizes = [c for c in columns if c.meaning.kind in ("magnitude", "power")]
     ends = {c: match[1].lower() for c in sizes if (match := IN_OR_OUT.fullmatch(c.meaning.label))}
+    both = {c: "in" if match[1] else "out" for c in sizes if (match := AT_ENDS.fullmatch(c.meaning.label))}
+    ends = ends or both
     turned = [re.split(r"\s*[-/]\s*", c.meaning.label) for c in columns if c.meaning.kind == "phase"]
     if not ends and [len(labels) for labels in turned] == [2]:  # one phase, of CH2-CH1
         ends = {c: ("out", "in")[turned[0].index(x)] for c in sizes if (x := c.meaning.label) in turned[0]}
@@ -237,10 +266,20 @@ def _over_input(columns: list[DataColumn], guesses: list[str]) -> list[DataColum
     if sorted(ends.values()) != ["in", "out"] or len(kinds) != 1:
         return columns
     over, result = sorted(ends, key=lambda c: ends[c])
-    ratio = _plain_size(result) / np.where(_plain_size(over) == 0, np.nan, _plain_size(over))
+    factor, unit = _quotient_of_units(result.meaning.unit, over.meaning.unit)
+    ratio = factor * _plain_size(result) / np.where(_plain_size(over) == 0, np.nan, _plain_size(over))
     guesses.append(f"the magnitude is '{result.name[:30]}' over '{over.name[:30]}'")
-    quotient = replace(result, meaning=_RATIO, numbers=ratio, wrong=tuple({*result.wrong, *over.wrong}))
+    meaning = replace(_RATIO, unit=unit)
+    quotient = replace(result, meaning=meaning, numbers=ratio, wrong=tuple({*result.wrong, *over.wrong}))
     return [quotient if c is result else c for c in columns if c is not over]
+
+
+def _quotient_of_units(above: str, below: str) -> tuple[float, str]:
+    """Return what the quotient of two columns is multiplied by, and its SI unit if both units are known."""
+    known, other = in_si(above), in_si(below)
+    if known is None or other is None:
+        return 1.0, ""
+    return known[0] / other[0], ratio_of_units(known[1], other[1])
 
 
 def _plain_size(column: DataColumn) -> Real:
@@ -265,14 +304,18 @@ def _made_over_input(made: list[Assembled], guesses: list[str]) -> list[Assemble
         return made
     over, result = (made[ends.index(end)] for end in ("in", "out"))
     guesses.append(f"the response is '{result.label[:30]}' over '{over.label[:30]}'")
+    factor, unit = _quotient_of_units(*(m.columns[1].meaning.unit for m in (result, over)))
     with np.errstate(all="ignore"):
-        return [replace(result, label="", values=result.values / over.values, unit="")]
+        return [replace(result, label="", values=factor * result.values / over.values, unit=unit)]
 
 
 def _sections(columns: Sequence[DataColumn]) -> list[list[DataColumn]]:
     """Return each frequency column with the columns that belong to it."""
     lines = [c for c in columns if c.meaning.kind == "frequency"]
-    first, *others = sorted(lines, key=lambda c: (c.meaning.scale == "logarithm", c.meaning.factor is None))
+    first, *others = sorted(
+        lines,
+        key=lambda c: (c.meaning.scale == "logarithm", c.meaning.factor is None, c.meaning.factor != 1),
+    )
     section = [first]
     for other in others:
         a, b = _hertz(first, []), _hertz(other, [])
@@ -291,6 +334,15 @@ def _sections(columns: Sequence[DataColumn]) -> list[list[DataColumn]]:
         message = "there are two frequency columns with different values"
         raise DataError(Diagnostic("SF602", message, section[1].span, ask(columns)))
     return [[order[a], *one] for a, one in zip(begins, sections, strict=True)]
+
+
+def _in_hertz(column: DataColumn, others: Sequence[DataColumn]) -> DataColumn:
+    """Return a column, a frequency without a unit in Hz if another has the same frequencies in rad/s."""
+    if column.meaning.kind != "frequency" or column.meaning.factor is not None:
+        return column
+    in_hz = replace(column, meaning=replace(column.meaning, factor=1.0))
+    known = (c for c in others if c.meaning.kind == "frequency" and c.meaning.factor not in (None, 1.0))
+    return in_hz if any(_is_rounded(in_hz, c) for c in known) else column
 
 
 def _is_rounded(first: DataColumn, other: DataColumn) -> bool:
@@ -353,7 +405,7 @@ def _groups(
         guesses.append(f"'{best.name[:30]}'{others}: {flat}")
         groups = [(best.meaning.label, {"power": best})]
     sizes = [c for c in columns if c.meaning.kind == "magnitude"]
-    if not groups and len(sizes) == 1 and (is_asked or sizes[0].meaning is _RATIO):
+    if not groups and len(sizes) == 1 and (is_asked or sizes[0].meaning.word == _RATIO.word):
         groups = [("", {"magnitude": sizes[0]})]
     return groups
 
@@ -536,6 +588,8 @@ def _best(costs: dict[Choice, float], margin: float) -> Choice | None:
 def ratio_unit(text: str, file: str) -> str:
     """Return a unit that a header gives, where it is one of a ratio; g may be the gram and is not taken."""
     small = "Ohm" if text.lower() in OHMS else text
+    if small == "1":
+        return small
     if "/" not in small.replace("Ohm", "/") or re.search(r"\bg\b", small):
         return ""
     try:

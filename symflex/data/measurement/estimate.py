@@ -164,7 +164,8 @@ def responses_of(record: TimeRecord, how: Estimate) -> tuple[MeasuredResponse, .
         made.append(
             MeasuredResponse(
                 called, frequency[is_finite], response[is_finite], shares, averages, window,
-                notes=(said,), guesses=(*record.guesses, said), is_record=True, is_magnitude=is_driven,
+                record.unit(name) if record.input else "", notes=(said,), guesses=(*record.guesses, said),
+                is_record=True, is_magnitude=is_driven,
                 cut_off_s=1 / frequency[1] if said.startswith(OF_STEP) and not window else None,
             )
         )  # fmt: skip

@@ -24,22 +24,20 @@ from typing import Final
 import numpy as np
 
 from symflex.data.measurement.arrays import Arrays, arrays_in, format_of, matrix_of
-from symflex.data.measurement.measured_response import MAX_BYTES, MAX_ERRORS, MAX_LINES, listed_names
+from symflex.data.measurement.column_names import SECONDS
+from symflex.data.measurement.measured_response import (
+    MAX_BYTES,
+    MAX_ERRORS,
+    MAX_LINES,
+    in_si,
+    listed_names,
+)
 from symflex.data.measurement.text_table import SIGNS, TextTable, cut
 from symflex.errors import DataError, Diagnostic
 from symflex.model.spec.read import read_file
 
 ARRAYS: Final = (".npz", ".npy", ".mat", ".h5", ".hdf5", ".tdms", ".json")
 ENDINGS: Final = (".csv", ".txt", ".dat", ".tsv", ".asc", ".lvm", *ARRAYS)  # of files that hold inputs
-_UNITS: Final = {
-    Fraction(1): "s sec secs second seconds sekunde sekunden",
-    Fraction(1, 10**3): "ms msec millis millisecond milliseconds",
-    Fraction(1, 10**6): "us usec \u00b5s \u03bcs micros microsecond microseconds",
-    Fraction(1, 10**9): "ns nanosecond nanoseconds",
-    Fraction(60): "min mins minute minutes minuten",
-    Fraction(3600): "h hr hrs hour hours stunde stunden",
-}
-SECONDS: Final = {word: factor for factor, words in _UNITS.items() for word in words.split()}
 _UNIT, _LONGER = ("|".join(w for w in SECONDS if (SECONDS[w] > 1) == longer) for longer in (False, True))
 TIME = re.compile(
     r"(?:(?:elapsed|relative|rel|sim|simulation)[ _.]*)?"
@@ -50,9 +48,10 @@ TIME = re.compile(
     re.I,
 )
 _AXIS = re.compile(r"x|x[- _]?axis", re.I)  # names of a column that the unit below shows to be the time
-_COUNTED = re.compile(r"^X,.*Start,Increment,?\nSequence,.*?,([^,\n]+),([^,\n]+),?$", re.M)
+_COUNTED = re.compile(r"^(X,.*),Start,Increment,*\nSequence,(.*?),([^,\n]+),([^,\n]+),*$", re.M)
 """Above rows that are numbered, and begin at a time, with a distance (oscilloscopes)."""
 BESIDE: Final = 3  # column of the time if those before it hold what is known of a record (oscilloscopes)
+_ABOUT: Final = ("Horizontal Units", "Source", "Vertical Units")  # what is known of time and channel there
 COMMENTS: Final = ("#", "%", "!", "//")
 HINT: Final = "two columns: time_s, and the value"
 LARGEST_EXPONENT: Final = 400  # of a decimal: far beyond what doubles hold
@@ -88,15 +87,13 @@ def _signal(name: str, data: bytes) -> InputSignal:
         i for i, line in enumerate(table.lines) if line.strip() and not line.strip().startswith(COMMENTS)
     ]
     first = next((i for i in written if table.is_row(i, 2)), None)
-    is_beside = first is None and all(_is_beside(table, i) for i in written)
-    first = written[0] if is_beside and written else first
+    first = first_beside(table) if first is None else first
     if first is None:
         raise DataError(Diagnostic("SF605", f"'{name}' contains no rows of numbers", None, HINT))
     lines = [i for i in written if i >= first]
     if len(lines) > MAX_LINES:
         raise DataError(Diagnostic("SF607", f"'{name}' has more than {MAX_LINES} lines"))
     names, at, unit, start = named_time(table, first)
-    at = BESIDE if is_beside else at
     if not names and written[0] < first:
         above = table.line(written[written.index(first) - 1])
         raise DataError(Diagnostic("SF602", "the first column is not the time", above, HINT))
@@ -140,17 +137,42 @@ def _signal(name: str, data: bytes) -> InputSignal:
     return InputSignal(tuple(times), tuple(values), tuple(guesses))
 
 
-def _is_beside(table: TextTable, index: int) -> bool:
-    cells = cut(table.lines[index], table.delimiter)
-    return len(cells) == BESIDE + 2 and not cells[BESIDE - 1] and _decimal(cells[BESIDE]) is not None
+def first_beside(table: TextTable) -> int | None:
+    """Return the first line if in all of them the samples are behind what is known of the record."""
+    written = [i for i, line in enumerate(table.lines) if line.strip()]
+    rows = (cut(table.lines[i], table.delimiter) for i in written)
+    are_beside = (
+        len(cells) >= BESIDE + 2  # the time and a value
+        and _decimal(cells[0]) is None
+        and None not in map(_decimal, cells[BESIDE:])
+        for cells in rows
+    )
+    return written[0] if written and all(are_beside) else None
+
+
+def _names_beside(table: TextTable) -> list[str]:
+    """Return the names of the columns of such a table, with the units that it states."""
+    rows = (cut(line, table.delimiter) for line in table.lines if line.strip())
+    about = {cells[0]: cells[1] for cells in rows if cells[0]}
+    horizontal, source, vertical = (about.get(key, "").strip() for key in _ABOUT)
+    return [
+        *[""] * BESIDE,
+        f"TIME [{horizontal or 's'}]",
+        (source or "CH1") + f" [{vertical}]" * bool(vertical),
+    ]
 
 
 def named_time(table: TextTable, first: int) -> tuple[list[str], int, Fraction, Fraction]:
     """Return the names of columns above the first row, which is the time, its unit and what to add [s]."""
     if counted := _COUNTED.search(table.source.text):
-        start, step = (_decimal(text) for text in counted.groups())
+        start, step = (_decimal(text) for text in counted.groups()[2:])
         if start is not None and step:
-            return ["X", "CH1"], 0, step, start
+            units = [*counted[2].split(","), *[""] * len(counted[1])]
+            pairs = zip(counted[1].split(",")[1:], units, strict=False)
+            return ["X", *(f"{name} [{unit}]" * bool(name) for name, unit in pairs)], 0, step, start
+    if first_beside(table) == first:
+        names = _names_beside(table)
+        return names, BESIDE, SECONDS.get(names[BESIDE][6:-1].lower(), Fraction(1)), Fraction(0)
     below: list[str] = []
     for line, above in pairwise([*reversed(table.lines[:first]), ""]):
         text = line.strip().lstrip(SIGNS) if line.strip().startswith(COMMENTS) else line
@@ -159,7 +181,12 @@ def named_time(table: TextTable, first: int) -> tuple[list[str], int, Fraction, 
             units = [SECONDS.get(word.strip("[]() ").lower()) for word in below] + [None] * len(names)
             for i, name in enumerate(names if names[1:] else ()):
                 match = TIME.fullmatch(name.strip("\"' _"))
-                named = cut(above, table.delimiter)[i : i + 1]
+                over = cut(above.strip().lstrip(SIGNS), table.delimiter)
+                are_units = all(in_si(word) for word in names if word is not name)
+                is_above = bool(len(over) == len(names) and over[i]) and are_units
+                named = over[i : i + 1]
+                if match and match["alone"] and is_above and not TIME.fullmatch(over[i]):
+                    return over, i, SECONDS[match["alone"].lower()], Fraction(0)  # Second,Volt,Volt
                 if match and match["alone"] and (name is names[-1] or (named and TIME.fullmatch(named[0]))):
                     continue  # a row of units: the names are above
                 if match or (units[i] and _AXIS.fullmatch(name.strip())):

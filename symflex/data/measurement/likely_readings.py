@@ -16,7 +16,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from symflex.data.measurement.column_meaning import DataColumn, counts, meaning_of, size_of
+from symflex.data.measurement.column_meaning import ColumnMeaning, DataColumn, counts, meaning_of, size_of
 from symflex.data.measurement.column_names import OTHER_SIZE
 from symflex.data.measurement.minimum_phase import FEWEST_TO_DECIDE, misfit
 
@@ -39,6 +39,8 @@ MOST_LISTED: Final = 6  # columns that are not used and are listed by name
 EVENLY, HELD = 0.02, 0.1  # median deviation of a time's steps; share of equal neighbours in signals
 SINCE_1970: Final = 1e11  # numbers above which an unnamed axis is a time in milliseconds, no frequency
 MOST_COMPARED: Final = 1000  # lines by which readings are compared
+UNLIKE_RESPONSES: Final = 1.0  # natural logarithm from which columns are no response: energies e apart
+_Reading = tuple[tuple[str, str], tuple[int, int]]  # words, and their columns
 _READINGS: Final = (("re", "im"), *product(("mag_db", "mag"), ("phase_deg", "phase_rad")))
 """Words of ``--columns`` that make a response in pairs."""
 
@@ -118,7 +120,7 @@ def option_in_time(columns: Sequence[npt.NDArray[Any]], before: int = 0) -> str:
     if counts(times):
         return f"--columns {'-,' * (before + 1)}{signals(columns[1:], ',dt=SECONDS of a time record')}"
     steps, usual = np.diff(times), np.median(np.diff(times))
-    if times[0] and not np.median(np.abs(steps - usual)) <= EVENLY * usual:
+    if usual <= 0 or (times[0] and not np.median(np.abs(steps - usual)) <= EVENLY * usual):
         return ""
     return f"--columns {'-,' * before}t,{signals(columns[1:], ' of a time record')}"
 
@@ -143,12 +145,31 @@ def _may_be(column: DataColumn, word: str) -> bool:
     return word != "psd" or bool(meaning.kind)
 
 
+def is_time(columns: Sequence[Real]) -> bool:
+    """Return whether the first of three columns or more goes up evenly from zero, beside no response."""
+    times, steps = columns[0], np.diff(columns[0])
+    if times[0] > 0 or not np.allclose(steps, steps.mean(), EVENLY, 0) or counts(times) or not columns[2:]:
+        return False
+    made = [DataColumn("", ColumnMeaning(), x) for x in columns]
+    is_at_rest = all(abs(x[0]) <= SAME_SIZE * np.std(x) for x in columns[1:])  # as a record may begin
+    limit = UNLIKE_RESPONSES / 2 if is_at_rest else UNLIKE_RESPONSES
+    return min(_costs(made, 0, range(1, len(columns))).values(), default=np.inf) > limit
+
+
 def _likely(
     columns: Sequence[DataColumn], axis: int, open_ones: Sequence[int], margin: float
-) -> list[tuple[tuple[str, str], tuple[int, int]]]:
+) -> list[_Reading]:
     """Return the readings of two columns as one response, words and places, the likeliest first."""
+    costs = _costs(columns, axis, open_ones)
+    best = min(costs.values(), default=0.0)
+    near = [reading for reading in costs if costs[reading] <= best + margin]
+    return sorted(near, key=costs.__getitem__)[:3]
+
+
+def _costs(columns: Sequence[DataColumn], axis: int, open_ones: Sequence[int]) -> dict[_Reading, float]:
+    """Return how far each reading of two columns is off a causal function."""
     columns = [replace(c, numbers=c.numbers[:: c.numbers.size // MOST_COMPARED + 1]) for c in columns]
-    lines, costs = np.asarray(columns[axis].numbers.real, np.float64), {}
+    lines, costs = np.asarray(columns[axis].numbers.real, np.float64), dict[_Reading, float]()
     are_known = any(columns[i].meaning.kind for i in open_ones)
     for pair, words in product(permutations(open_ones[:MOST_LISTED], 2), _READINGS):
         one, two = (columns[i] for i in pair)
@@ -163,6 +184,4 @@ def _likely(
             size = size_of(one, "decibel" if words[0] == "mag_db" else "linear")
             turn = two.numbers.real * (np.pi / 180 if words[1] == "phase_deg" else 1.0)
         costs[words, pair] = misfit(lines, size, turn)
-    best = min(costs.values(), default=0.0)
-    near = [reading for reading in costs if costs[reading] <= best + margin]
-    return sorted(near, key=costs.__getitem__)[:3]
+    return costs

@@ -11,8 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from symflex.errors import DataError, Diagnostic, Span, SpecError, Text
-from symflex.quantities import parse_unit
+from symflex.quantities import WRITTEN_OUT, Unit, parse_unit
 
+LONGEST_UNIT: Final = 30  # characters
+_RELATIVE: Final = ("g", "gs", "1", "-", "x", "h", "d")  # of no unit, or of one that means two things
+_KELVIN: Final = re.compile(r"(?:\u00b0|deg(?:rees?)? ?)C(?:elsius)?\b|\u2103")  # of differences
 _EXPONENTIAL = re.compile(
     r"exponential[\s:=]+((?=[\d.]*[1-9])(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d{1,2})?)\s*s?", re.I
 )
@@ -191,6 +194,10 @@ def checked_response(
         raise DataError(Diagnostic("SF607", f"'{file}' has more than {MAX_LINES} lines"))
     lines, said = _ordered(response, span_of)
     response = response.taken(lines)
+    if (known := in_si(response.unit)) and known[0] != 1:
+        factor, unit = known
+        said.append(f"values are in {response.unit}, and are read in {unit}: times {factor:.6g}")
+        response = replace(response, values=factor * response.values, unit=unit)
     if response.coherence is not None and lines.size >= FEWEST_TO_SCATTER:
         if many := int(np.sum(response.coherence > 1)):
             said.append(f"the coherence is above 1 on {many} lines: lines are weighed by their scatter")
@@ -338,6 +345,49 @@ def unit_of(text: str, file: str, span: Span | None = None) -> str:
         usual = "such as m/N, m/(N*s^2), rad/V; 1 for a pure number; leave it out if there is no unit"
         raise DataError(Diagnostic("SF602", message, span, reason.hint or usual)) from None
     return unit
+
+
+def in_si(written: str) -> tuple[float, str] | None:
+    """Return the factor to SI of a unit as headers write it, and the SI unit; ``None`` if it is unknown.
+
+    >>> in_si("mm/s"), in_si("Volts"), in_si("rpm"), in_si("N.m"), in_si("counts")
+    ((0.001, 'm/s'), (1.0, 'V'), (0.10471975511965977, 'rad/s'), (1.0, 'N*m'), None)
+    """
+    text = re.sub(r"(?<=[A-Za-z])[.\u00b7\u22c5\u2022](?=[A-Za-z])", "*", written.strip())
+    if not 0 < len(text) <= LONGEST_UNIT or text.lower() in _RELATIVE:
+        return None
+    text = re.sub(r"[A-Za-z]{3,}", lambda word: WRITTEN_OUT.get(word[0].lower(), word[0]), text)
+    text = re.sub(r"\b(?:rpm|rad|deg)\b", lambda word: word[0].lower(), text, flags=re.I)
+    text = _KELVIN.sub("K", text.replace("\u00ba", "\u00b0"))
+    try:
+        unit = parse_unit(Text.alone("", text))
+    except SpecError:
+        return None
+    if "hz" in text.lower():  # a measured frequency is no speed of rotation
+        return (1.0, text) if text == "Hz" else None
+    factor = float(unit.scale) * np.pi**unit.pi_power * (2 * np.pi) ** unit.cycles
+    return float(factor), _coherent(unit, text if factor == 1 and not unit.cycles else "")
+
+
+def _coherent(unit: Unit, text: str) -> str:
+    """Return the SI unit, in the words of the text that wrote it if there is one."""
+    if re.fullmatch(r"[A-Za-z*^2/()1]+", text) and text.count("/") < 2 and text != "Nm":  # noqa: PLR2004
+        return text
+    turns, plain = unit.radians + unit.cycles, str(unit.dimension)
+    if turns != 1:
+        return plain
+    return "rad" + plain.removeprefix("1") if plain.startswith("1") else f"rad*{plain}"
+
+
+def ratio_of_units(above: str, below: str) -> str:
+    """Return one SI unit over another, empty unless both are known."""
+    if not above or not below:
+        return ""
+    if below in (above, "1"):
+        return "1" if above == below else above
+    over = f"({above})" if "/" in above else above
+    under = f"({below})" if re.search("[*/]", below) else below
+    return (in_si(f"{over}/{under}") or (0, ""))[1]
 
 
 def window_of(text: str) -> str:

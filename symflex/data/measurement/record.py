@@ -16,19 +16,34 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Sequence, Set
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence, Set
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
-from symflex.data.measurement.arrays import Arrays, arrays_in, format_of, largest_matrix
+from symflex.data.measurement.arrays import (
+    Arrays,
+    arrays_in,
+    format_of,
+    largest_matrix,
+    matrix_of,
+    with_axes,
+)
 from symflex.data.measurement.column_meaning import meaning_of
-from symflex.data.measurement.input_signal import ARRAYS, SECONDS, TIME, InputSignal, named_time
-from symflex.data.measurement.measured_response import MAX_LINES, are_few, listed_names
-from symflex.data.measurement.text_table import COMMENTS, TextTable, bare, cut, number
+from symflex.data.measurement.column_names import SECONDS
+from symflex.data.measurement.input_signal import (
+    ARRAYS,
+    TIME,
+    InputSignal,
+    first_beside,
+    named_time,
+)
+from symflex.data.measurement.likely_readings import is_time
+from symflex.data.measurement.measured_response import MAX_LINES, are_few, in_si, listed_names, ratio_of_units
+from symflex.data.measurement.text_table import COMMENTS, SIGNS, TextTable, bare, cut, number
 from symflex.errors import DataError, Diagnostic, refused
 
 Real = npt.NDArray[np.float64]
@@ -41,12 +56,15 @@ JITTER: Final = 0.02  # share of the sampling time by which a clock's last digit
 UNEVEN: Final = 0.5  # the same, from which a sample is missing
 SATURATED: Final = 4  # samples in a row at an end of a channel's range, from which it looks cut off
 LEVELS: Final = 10  # different values of a step or of a square wave, and of nothing else
+STANDARD_GRAVITY: Final = 9.80665  # m/s^2 (CGPM 1901)
+MOST_CHANNELS: Final = 64  # columns of a matrix that are channels
 SAME: Final = 1 - 1e-12  # correlation from which a channel is a multiple of another
 
 _INPUT = re.compile(
     r"(?:u|u_?est|u_?val|v_?in|u_?in|in|inp|f|exc|stim|ref|r|cmd|dac|pwm|duty)(?:[ _]?\d+)?|"
     r"(?:\w+[ _])?(?:input|eingang|entr[eé]e|force|kraft|hammer|impact|excitation|anregung|drive|actuator|"
-    r"stimulus|reference|command|cmd|desired|target|set[ _]?point|torque|moment|effort)(?:[ _]?\w+)?",
+    r"stimulus|reference|command|cmd|desired|target|set[ _]?point|torque|moment|effort|throttle|esc)"
+    r"(?:[ _]?\w+)?",
     re.I,
 )
 _MARKER = re.compile(r"(?:\w+[ _])?(?:trigger|trig|tacho\w*|keyphasor|marker|event|gate)(?:[ _]?\w+)?", re.I)
@@ -70,12 +88,24 @@ _INTERVAL = re.compile(
 _NUMBER_WITH_UNIT = re.compile(r"[\s:=,;\t\"]*([-+]?[\d.]+(?:[.,]\d+)?(?:e[-+]?\d+)?)\s*\(?([a-zµμ]*)", re.I)
 _HERTZ: Final = {"": 1.0, "hz": 1.0, "khz": 1e3, "mhz": 1e6, "s/s": 1.0, "sps": 1.0}
 _ALIKE = re.compile(r"[ _.-]?(?:[xyz]|\d+)$", re.I)
-_OF_AN_INSTRUMENT: Final = {"ch", "channel", "kanal", "ai", "trace", "in", "col", "column"}
+_OF_AN_INSTRUMENT: Final = {"", "ch", "channel", "kanal", "ai", "trace", "in", "col", "column"}
 """What channels are called whatever they measure."""
-_FREQUENCY = re.compile(r"freq|fr\u00e9q|omega", re.I)
+_FREQUENCY = re.compile(r"freq|fr\u00e9q", re.I)
 _SPEED = re.compile(r"vel|speed|gyro|rate|geschw|vitesse|drehz|angular(?!.?fr)", re.I)
+_SIGNALS: Final = ("f", "omega", "w", "\u03c9", "angular")
+"""Words for frequencies that signals have, too."""
 _SPECTRUM = re.compile(r"\b(?:fft|psd)\b|spectrum|spectral", re.I)
 _IN_BRACKETS = re.compile(r"\s*[\[(](.*?)[\])]\s*$")
+_BEHIND = re.compile(r"(?<=\w)(?:\s+in\s+|,\s*)(\S+)$")
+_SUFFIX = re.compile(
+    r"(?<=\w)_(mm|um|nm|mV|uV|kV|mA|kN|mN|Nm|deg|rpm|rad|kPa|bar|N|V|mm_s|m_s2?|rad_s|deg_s)$"
+)
+"""A unit behind a name: ``x in mm``, ``x, mm``, ``x_mm``."""
+_OF_TIME = re.compile(r"(?:t|time)([/_])\s*(?:s|ms)", re.I)
+"""Names of a time after which others have their units in the same way, ``F/N`` or ``x_m``."""
+_SAID = re.compile(r"\W*units?(?:[ _]+(?:of[ _]+)?(?P<of>[^:=]+?))?\s*[:=]\s*(?P<unit>[^=]+)", re.I)
+"""Comments that give the unit of a response, of one channel, or of all columns."""
+_SHAKEN = re.compile(r"acc|a[xyz]?\d*|beschl|vib|imu|point.*", re.I)  # names of what is measured in g
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,6 +117,14 @@ class TimeRecord:
     outputs: tuple[tuple[str, Real], ...]  # names and samples
     input: tuple[str, Real] | None = None
     guesses: tuple[str, ...] = ()  # what the file does not say
+    units: Mapping[str, str] = field(default_factory=dict)  # of channels, in SI, where the file gives them
+
+    def unit(self, output: str) -> str:
+        """Return the unit of an output over the input, empty if the file does not give both."""
+        source = self.input[0] if self.input else ""
+        return self.units.get(f"{output}/{source}") or ratio_of_units(
+            self.units.get(output, ""), self.units.get(source, "")
+        )
 
     def driven(self, output: str) -> tuple[InputSignal, tuple[str, Real]]:
         """Return the input and an output, by name or the first, both from where they begin; SF902 without."""
@@ -110,54 +148,82 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
         return None
     suffix = format_of(name, data)
     if suffix in ARRAYS:
-        arrays = arrays_in(name, data, suffix)
+        arrays = with_axes(arrays_in(name, data, suffix))
         return _asked_arrays(arrays, words, interval, name, stem) if asked else _of_arrays(arrays, name, stem)
     if not asked and not _may_be_record(data):
         return None
     table = TextTable.of(name, timed := _without_clock(data))
-    first = next((i for i in range(min(SEARCHED, len(table.lines))) if _is_row(table, i)), None)
+    used = [i for i, word in enumerate(words) if word not in ("-", "")]
+    head = range(min(SEARCHED, len(table.lines)))
+    first = next((i for i in head if _is_row(table, i, used)), None)
+    first = first_beside(table) if first is None else first
     if first is None and asked:
         raise DataError(Diagnostic("SF605", f"'{name}' has no rows of numbers", None, "one row per sample"))
     if first is None:
         return None
-    width = len(cut(table.lines[first], table.delimiter))
+    if asked:
+        return _asked_columns(table, first, words, interval, stem)
+    return _of_table(table, first, stem, is_timed=timed is not data)
+
+
+def _width(table: TextTable, first: int, names: Sequence[str]) -> int:
+    """Return how many columns there are: rows of oscilloscopes may have an empty one at the end."""
+    cells = cut(table.lines[first], table.delimiter)
+    return len(cells) if first_beside(table) is not None else max(len(cells), len(names))
+
+
+def _asked_columns(
+    table: TextTable, first: int, words: Sequence[str], interval: str, stem: str
+) -> TimeRecord:
+    """Return the record of the columns that ``--columns`` names, in the units of the header."""
+    guesses = list(table.guesses)
+    names, at, unit, _ = named_time(table, first)
+    width = _width(table, first, names)
+    unused = {*range(len(words), width), *(i for i, word in enumerate(words) if word in ("-", ""))}
+    columns, lines = _numbers(table, first, width, guesses, unused)
+    # A plain t has the unit of the header.
+    columns = [x * float(unit) if (i, words[i:][:1]) == (at, ["t"]) else x for i, x in enumerate(columns)]
+    cells = names or _names(table, first, width) or [*words, *["-"] * width]
+    named = _in_si(cells, _units_below(table, first, cells), columns, table.lines[:first])
+    return _with_units(_asked(named.channels, words, interval, stem, guesses, (table, lines)), named)
+
+
+def _of_table(table: TextTable, first: int, stem: str, *, is_timed: bool) -> TimeRecord | None:
+    """Return the record of a text, ``None`` if it has no time; times of day may have no name."""
     guesses = list(table.guesses)
     names, at, unit, start = named_time(table, first)
-    if asked:
-        unused = {*range(len(words), width), *(i for i, word in enumerate(words) if word in ("-", ""))}
-        columns, lines = _numbers(table, first, width, guesses, unused)
-        # A plain t has the unit of the header.
-        columns = [x * float(unit) if (i, words[i:][:1]) == (at, ["t"]) else x for i, x in enumerate(columns)]
-        channels = list(zip(_names(table, first, width) or [*words, *["-"] * width], columns, strict=False))
-        return _asked(channels, words, interval, stem, guesses, (table, lines))
-    if not names and timed is not data:  # nothing names the times of day: behind a date of zero, or first
+    width = _width(table, first, names)
+    unused = {i for i, name in enumerate(names[:at]) if not name}
+    if not names and is_timed:  # nothing names the times of day: behind a date of zero, or first
         names, at = [f"column {i + 1}" for i in range(width)], int(table.lines[first].startswith("0"))
     step = None if names else _stated_step(table, first)
     if not names and step is None:
         return None
-    if any(_is_frequency(cell) for cell in (*names, *_names(table, first, width))):
+    if _are_responses([*names, *_names(table, first, width)]):
         return None
     cells = names or _names(table, first, width) or [f"channel {i + 1}" for i in range(width)]
-    columns, lines = _numbers(table, first, width, guesses)
+    columns, lines = _numbers(table, first, width, guesses, unused)
+    named = _in_si(cells, _units_below(table, first, cells), columns, table.lines[:first])
     if names and np.isfinite(columns[at]).sum() == 1 and np.nansum(columns[at]) > 0:  # the sampling time
         names, step = [], float(np.nansum(columns[at])) * float(unit)
     if names:
         times = _seconds(columns[at] * float(unit), guesses) + float(start)
         # Counters and magnitudes of vectors, which are no longer such where they are made even.
-        excluded = [at, *(i for i, x in enumerate(columns) if np.all(np.diff(x) == 1))]
+        excluded = [at, *unused, *(i for i, x in enumerate(columns) if np.all(np.diff(x) == 1))]
         squares = np.sum([x**2 for i, x in enumerate(columns) if i not in excluded], axis=0)
         for i, x in enumerate(columns):
             if width - len(excluded) > 3 and np.allclose(2 * x**2, squares, 1e-6, 0):  # noqa: PLR2004 (x, y, z)
                 excluded.append(i)
                 guesses.append(f"'{cells[i][:30]}' is the magnitude of the others and is left out")
-        channels = [(_plain(c, i), columns[i]) for i, c in enumerate(cells[:width]) if i not in excluded]
+        channels = [c for i, c in enumerate(named.channels) if i not in excluded]
         step, kept = _even(times, table, lines, guesses)
         channels = [(c, _resampled(times, x, step) if kept else x) for c, x in channels]
     else:
         assert step is not None
         guesses.append(f"the samples are {step:.6g} s apart, as the file states")
-        channels = [(_plain(c, i), columns[i]) for i, c in enumerate(cells[:width])]
-    return _sorted(channels, step, stem, name, guesses, "t,u,y" if names else f"u,y,dt={step:.6g}")
+        channels = named.channels
+    option = "t,u,y" if names else f"u,y,dt={step:.6g}"
+    return _with_units(_sorted(channels, step, stem, table.source.name, guesses, option), named)
 
 
 def _without_clock(data: bytes) -> bytes:
@@ -192,28 +258,39 @@ def _seconds(times: Real, guesses: list[str]) -> Real:
     return times
 
 
-def _is_frequency(name: str) -> bool:
-    """Tell whether a name is that of a frequency or of a spectrum; a force may be called F."""
-    is_named = meaning_of(name).kind == "frequency" and bare(name).lower() != "f"
-    return (is_named and not _SPEED.search(name)) or bool(_SPECTRUM.search(name))
+def _are_responses(names: Sequence[str]) -> bool:
+    """Tell whether one of several names is that of a frequency or of a spectrum."""
+    # A force may be called F, a velocity w: they are frequencies beside both parts of a response alone.
+    meanings = [meaning_of(name) for name in names]
+    kinds = {m.kind for m in meanings}
+    are_pairs = {"real", "imaginary"} <= kinds or {"magnitude", "phase"} <= kinds
+    frequencies = (
+        name
+        for name, m in zip(names, meanings, strict=True)
+        if m.kind == "frequency" and (are_pairs or m.word not in _SIGNALS)
+    )
+    return any(not _SPEED.search(name) for name in frequencies) or any(map(_SPECTRUM.search, names))
 
 
 def _may_be_record(data: bytes) -> bool:
-    """Tell whether a text may be a record: its head says time, and none of it speaks of a frequency."""
+    """Tell whether a text may be a record: its head says time, and no line below speaks of a frequency."""
     head = data[:20_000].decode("latin-1")
     if not (any(p.search(head) for p in (TIME, _RATE, _INTERVAL)) or _CLOCK.search(data, 0, len(head))):
         return False
     lower = data.lower()
-    if not any(word in lower for word in (b"freq", b"fr\xe9q", b"fr\xc3\xa9q", b"omega")):
+    if not any(word in lower for word in (b"freq", b"fr\xe9q", b"fr\xc3\xa9q")):
         return True
-    return not _FREQUENCY.search(_RATE.sub("", data.decode("latin-1")))
+    lines = data.decode("latin-1").splitlines()
+    return not any(_FREQUENCY.search(_RATE.sub("", line)) for line in lines if not line.startswith(COMMENTS))
 
 
-def _is_row(table: TextTable, index: int) -> bool:
-    """Tell whether a line begins with a number and has another, or nothing else; cells may be empty."""
+def _is_row(table: TextTable, index: int, used: Sequence[int] = ()) -> bool:
+    """Tell whether a line has numbers in columns, or begins with one and has another, or nothing else."""
+    cells = [number(c, table.decimal) for c in cut(table.lines[index], table.delimiter)]
+    if used and not table.lines[index].lstrip().startswith(COMMENTS):
+        return all(isinstance(cell, float) for i in used for cell in cells[i : i + 1] or [None])
     if table.is_row(index):
         return True
-    cells = [number(c, table.decimal) for c in cut(table.lines[index], table.delimiter)]
     return isinstance(cells[0], float) and sum(isinstance(c, float) for c in cells) > 1 if cells else False
 
 
@@ -240,8 +317,85 @@ def _stated_step(table: TextTable, first: int) -> float | None:
     return None
 
 
-def _plain(cell: str, index: int) -> str:
-    return _IN_BRACKETS.sub("", bare(cell)).strip() or f"channel {index + 1}"
+def _units_below(table: TextTable, first: int, names: Sequence[str]) -> list[str]:
+    """Return the units in the line above the first row, none if it is no row of units, or has the names."""
+    above = next((line for line in reversed(table.lines[:first]) if line.strip()), "")
+    text = above.strip().lstrip(SIGNS) if above.strip().startswith(COMMENTS) else above
+    cells = [cell.strip("[]()<> ") for cell in cut(text, table.delimiter)]
+    are_units = [cell.lower() in SECONDS or in_si(cell) is not None for cell in cells]
+    is_row = 1 < len(cells) <= len(names) and cells != [name.strip("[]()<> ") for name in names]
+    return cells if is_row and 2 * sum(are_units) > len(cells) else []
+
+
+def _with_unit(cell: str, style: str) -> tuple[str, str]:
+    """Return a name and the unit that is written behind it, as in ``x [mm]``, ``x in mm`` or ``x_mm``."""
+    text = bare(cell)
+    if match := _IN_BRACKETS.search(text):
+        return text[: match.start()].strip(), match[1].strip()
+    match = _BEHIND.search(text) or _SUFFIX.search(text)
+    if style and not match:
+        match = re.search(rf"(?<=\w)\s*{style}\s*(\(?[^{style}()]+(?:\([^()]+\))?\)?)$", text)
+    unit = re.sub(r"(?<=\w)_(?=s)", "/", match[1]) if match else ""
+    return (text[: match.start()].strip(), unit) if match and in_si(unit) else (text, "")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Named:
+    """Channels by name, with values in SI where a file gives their units."""
+
+    channels: list[tuple[str, Real]]
+    units: Mapping[str, str]  # in SI, by channel
+    said: Mapping[str, str]  # what is to be said of units, by channel
+    ratio: str = ""  # the unit of the response, as a comment gives it
+
+
+def _with_units(record: TimeRecord, named: _Named) -> TimeRecord:
+    """Return a record with the units of its channels, or of the response if a comment gives that alone."""
+    source = record.input[0] if record.input else ""
+    names = [*([source] if source else []), *(name for name, _ in record.outputs)]
+    guesses = [named.said[name] for name in names if name in named.said]
+    units, outputs = {name: unit for name, unit in named.units.items() if name in names}, record.outputs
+    known = in_si(named.ratio)
+    if known and not any(name in units for name, _ in outputs):
+        factor, ratio = known
+        outputs = tuple((name, x * factor) for name, x in outputs)
+        units |= {f"{name}/{source}" if source else name: ratio for name, _ in outputs}
+        if factor != 1:
+            guesses.append(f"values in {named.ratio[:20]} are read in {ratio}: times {factor:.6g}")
+    return replace(record, outputs=outputs, units=units, guesses=(*record.guesses, *guesses))
+
+
+def _in_si(
+    cells: Sequence[str], below: Sequence[str], columns: Sequence[Real], head: Sequence[str] = ()
+) -> _Named:
+    """Return channels in SI by their names, the units in a row below, and comments above."""
+    style = next((m[1] for cell in cells if (m := _OF_TIME.fullmatch(bare(cell)))), "")
+    parts = [_with_unit(cell, style) for cell in cells]
+    comments = (line.strip() for line in head if line.lstrip().startswith(COMMENTS))
+    fields = [match for line in comments if (match := _SAID.fullmatch(line))]
+    by_name = {(m["of"] or "").strip(" '\"[]()").lower(): m["unit"].strip() for m in fields}
+    listed = re.split(r"[,;\t]\s*", by_name.get("", ""))
+    rows = [row for row in (below, listed if len(listed) == len(cells) > 1 else ()) if row]
+    channels: list[tuple[str, Real]] = []
+    units: dict[str, str] = {}
+    said: dict[str, str] = {}
+    for i, (x, (name, own)) in enumerate(zip(columns, parts, strict=False)):
+        unit = own or by_name.get(name.lower(), "") or next((row[i] for row in rows if row[i:]), "")
+        are_units = in_si(name) is not None and [part[0] for part in parts].count(name) > 1
+        unit, called = (unit or name, "") if are_units else (unit, name)
+        called = called or f"channel {i + 1}"
+        called = f"{called} {i + 1}" if called in dict(channels) else called
+        known = in_si("m/s^2" if unit == "g" and _SHAKEN.match(called) else unit)
+        factor = (known[0] * (STANDARD_GRAVITY if unit == "g" else 1.0)) if known else 1.0
+        if unit.lower() in SECONDS or unit in ("", "-"):  # widths of pulses
+            known, factor = None, 1.0
+        elif known is None:
+            said[called] = f"the unit '{unit[:20]}' of '{called[:30]}' is not known: values are as written"
+        elif factor != 1:
+            said[called] = f"'{called[:30]}' is in {unit[:20]}, and is read in {known[1]}: times {factor:.6g}"
+        units |= {called: known[1]} if known else {}
+        channels.append((called, x * factor))
+    return _Named(channels, units, said, "" if rows and not below else by_name.get("", ""))
 
 
 def _numbers(
@@ -355,17 +509,21 @@ def _asked(
         if values.size < FEWEST_SAMPLES or not np.isfinite(values).all():
             message = f"column {i + 1} has not {FEWEST_SAMPLES} finite numbers, or contains something else"
             raise DataError(Diagnostic("SF603", message, None, "choose another column, or leave lines out"))
-        made[word.rstrip("0123456789")].append((_plain(channels[i][0], i), values))
+        made[word.rstrip("0123456789")].append((channels[i][0], values))
     if len(made["u"]) > 1 or not made["y"]:
         message = "--columns of a time record has one t, at most one u, and one y or more"
         raise refused(message, "such as t,u,y or u,y,dt=0.01")
-    return TimeRecord(stem, step, tuple(made["y"]), next(iter(made["u"]), None), tuple(guesses))
+    source, outputs = next(iter(made["u"]), None), made["y"]
+    if source and np.ptp(source[1]) == 0 and source[1][0]:
+        source, *outputs = _from_zero([source, *outputs], source[0], guesses)
+    return TimeRecord(stem, step, tuple(outputs), source, tuple(guesses))
 
 
 def _asked_arrays(arrays: Arrays, words: Sequence[str], interval: str, name: str, stem: str) -> TimeRecord:
     """Return the record of the arrays that ``--columns`` names, or of the columns of the largest matrix."""
     keys = [key for _, is_named, key in (word.partition("=") for word in words) if is_named]
     array_name, matrix = largest_matrix(arrays)
+    arrays = {**arrays, **_apart(arrays)}
     chosen = [arrays[k].ravel() for k in keys if k in arrays and arrays[k].dtype.kind in "fiu"]
     chosen = chosen if keys else list(matrix.T)
     if len(chosen) < len(words) or len({x.size for x in chosen}) != 1:
@@ -379,13 +537,31 @@ def _asked_arrays(arrays: Arrays, words: Sequence[str], interval: str, name: str
     return _asked(channels, words, interval, stem, [] if keys else guesses)
 
 
+def _apart(arrays: Arrays) -> Arrays:
+    """Return arrays with each channel of a matrix under its name and a number, ``acc 2``."""
+    apart: dict[str, npt.NDArray[Any]] = {}
+    for key, array in arrays.items():
+        if array.ndim != 2 or not 1 < min(array.shape) <= MOST_CHANNELS:  # noqa: PLR2004 (a matrix)
+            apart[key] = array
+            continue
+        called, unit = _with_unit(key, "")
+        rows = array if array.shape[0] < array.shape[1] else array.T
+        apart |= {f"{called} {i}" + f" [{unit}]" * bool(unit): row for i, row in enumerate(rows, 1)}
+    return apart
+
+
 def _of_arrays(arrays: Arrays, name: str, stem: str) -> TimeRecord | None:
     """Return the record of arrays: a time or a sampling time, and channels of one length."""
     plain = {k.rpartition(".")[2]: np.asarray(a) for k, a in arrays.items() if a.dtype.kind in "fiu"}
-    long = {k: np.asarray(a.ravel(), np.float64) for k, a in plain.items() if a.size >= FEWEST_SAMPLES}
-    if any(a.dtype.kind == "c" for a in arrays.values()) or not long:
+    if any(a.dtype.kind == "c" for a in arrays.values()):
         return None
-    guesses: list[str] = []
+    if (only := matrix_of(arrays)) is not None:
+        return _of_matrix(*only, stem)
+    plain = dict(_apart(plain))
+    long = {k: np.asarray(a.ravel(), np.float64) for k, a in plain.items() if a.size >= FEWEST_SAMPLES}
+    if not long:
+        return None
+    guesses, key = list[str](), ""
     timed = next(((k, m) for k in long if (m := TIME.fullmatch(k))), None)
     if timed is not None:
         key, match = timed
@@ -401,9 +577,24 @@ def _of_arrays(arrays: Arrays, name: str, stem: str) -> TimeRecord | None:
             return None
         size = Counter(x.size for x in long.values()).most_common(1)[0][0]
         channels = [(k, x) for k, x in long.items() if x.size == size]
-    if not channels or any(_is_frequency(k) for k, _ in channels):
+    if not channels or _are_responses([k for k, _ in channels]):
         return None
-    return _sorted(channels, step, stem, name, guesses, f"u=NAME,y=NAME,dt={step:.6g}")
+    named = _in_si([*(k for k, _ in channels), key], (), [x for _, x in channels])
+    option = f"u=NAME,y=NAME,dt={step:.6g}"
+    return _with_units(_sorted(named.channels, step, stem, name, guesses, option), named)
+
+
+def _of_matrix(key: str, matrix: npt.NDArray[Any], stem: str) -> TimeRecord | None:
+    """Return the record of a matrix without names if its first column can only be a time."""
+    columns = [np.asarray(x, np.float64) for x in matrix.T]
+    if len(columns[0]) < FEWEST_SAMPLES or not is_time(columns):
+        return None
+    said = (
+        f"the first column of '{key[:30]}' goes up evenly from 0, beside no response: it is taken as the time"
+    )
+    names = ["t", "u", *("y" if len(columns) == 3 else f"y{i}" for i in range(1, len(columns) - 1))]  # noqa: PLR2004
+    guesses = [f"{said} in seconds, the second as the input; --columns f,re,im says otherwise"]
+    return _asked(list(zip(names, columns, strict=True)), names, "", stem, guesses)
 
 
 def _sorted(
@@ -419,11 +610,8 @@ def _sorted(
             sample = int(np.argmin(np.isfinite(values))) + 1
             message = f"'{name}': sample {sample} of '{channel[:40]}' is not a finite number"
             raise DataError(Diagnostic("SF603", message, None, "leave the line out"))
-    for channel, values in channels:
-        if _INPUT.fullmatch(channel) and np.ptp(values) == 0 and values[0]:
-            guesses.append(f"'{channel[:30]}' is constant: a step from 0 at the first sample")
-            channels = [(c, np.append(0.0 if c == channel else x[0], x)) for c, x in channels]
-            break
+    constant = next((c for c, x in channels if _INPUT.fullmatch(c) and np.ptp(x) == 0 and x[0]), None)
+    channels = _from_zero(channels, constant, guesses) if constant else channels
     dead = [channel for channel, values in channels if np.ptp(values) == 0]
     channels = [(c, x) for c, x in channels if c not in dead]
     markers = [channel for channel, _ in channels if _MARKER.fullmatch(channel)]
@@ -442,6 +630,8 @@ def _sorted(
     if named:
         source = named[0]
     elif len(channels) == 1 or (many > 1 and alike not in _OF_AN_INSTRUMENT):
+        if channels[1:]:
+            guesses.append(f"no channel is an input; --columns {option} says otherwise")
         return TimeRecord(stem, step, tuple(channels), None, tuple(guesses))
     else:
         source = channels[0][0]
@@ -461,6 +651,14 @@ def _sorted(
             channels = [(c, x) for c, x in channels if c not in dropped]
     outputs = tuple((c, x) for c, x in channels if c != source)
     return TimeRecord(stem, step, outputs or (excitation,), excitation if outputs else None, tuple(guesses))
+
+
+def _from_zero(
+    channels: Sequence[tuple[str, Real]], constant: str, guesses: list[str]
+) -> list[tuple[str, Real]]:
+    """Return channels with a sample in front, at which an input that never changes is zero."""
+    guesses.append(f"'{constant[:30]}' is constant: a step from 0 at the first sample")
+    return [(c, np.append(0.0 if c == constant else x[0], x)) for c, x in channels]
 
 
 def _cut_off(values: Real) -> float | None:

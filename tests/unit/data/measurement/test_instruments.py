@@ -347,7 +347,7 @@ def test_a_magnitude_of_two_channels_alone_is_their_ratio(tmp_path):
 
 def test_sweeps_with_the_same_frequencies_are_averaged_and_up_and_down_kept_apart(tmp_path):
     path = tmp_path / "a.csv"
-    path.write_text("f,re,im\n" + rows(F, 2 * RE, IM) + rows(F, 0 * RE, IM))
+    path.write_text("f,re,im\n" + rows(F, 1.004 * RE, IM) + rows(F, 0.996 * RE, IM))
     (found,) = read_measurement(path)
     assert found.values == pytest.approx(H)
     assert "2 sweeps: those with the same frequencies are averaged" in found.guesses
@@ -360,6 +360,48 @@ def test_sweeps_with_the_same_frequencies_are_averaged_and_up_and_down_kept_apar
     )
     (found,) = read_measurement(path)  # the line without a number is left out of the mean
     assert found.values.size == F.size - 1
+
+
+def test_sweeps_that_differ_by_more_than_noise_are_kept_apart(tmp_path):
+    random, path = np.random.default_rng(2), tmp_path / "a.csv"
+    path.write_text("f,mag_db,phase_deg\n" + "".join(rows(F, DB + 0.5 * i, DEG) for i in range(8)))
+    found = read_measurement(path)
+    assert len(found) == 8
+    assert found[7].values == pytest.approx(H * 10 ** (3.5 / 20), rel=1e-6)
+    noisy = [H * (1 + 0.03 * random.normal(size=F.size)) for _ in range(8)]
+    path.write_text("f,re,im\n" + "".join(rows(F, h.real, h.imag) for h in noisy))
+    assert len(read_measurement(path)) == 1
+    path.write_text("level_V,f,mag_db,phase_deg\n" + "".join(rows(0 * F + i, F, DB, DEG) for i in range(8)))
+    assert len(read_measurement(path)) == 8
+
+
+@pytest.mark.parametrize(
+    "head", ["f[HZ],|V1| [V],|V2|[V],w", "f/Hz,V_1/V,V_2/V,omega/(rad/s)", "f,U1,U2,w", "f,Ue [V],Ua [V],w"]
+)
+def test_amplitudes_at_both_ends_are_a_ratio_and_f_beside_w_is_in_hz(tmp_path, head):
+    path = tmp_path / "a.csv"
+    path.write_text(head + "\n" + rows(F, 0 * F + 2, 2 * SIZE, 2 * np.pi * F))
+    (found,) = read_measurement(path)
+    assert abs(found.values) == pytest.approx(SIZE, rel=1e-6)
+    assert found.frequency_hz == pytest.approx(F)
+    assert any("the magnitude is" in guess for guess in found.guesses)
+    assert not any("has no unit" in guess for guess in found.guesses)
+
+
+def test_amplitudes_in_two_units_are_a_ratio_of_one(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text("f (Hz),Vin (V),Vout (mV)\n" + rows(F, 0 * F + 2, 2e3 * SIZE))
+    (found,) = read_measurement(path)
+    assert abs(found.values) == pytest.approx(SIZE, rel=1e-6)
+    assert found.unit == "1"
+
+
+def test_values_in_the_unit_of_a_file_are_read_in_si(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text("# unit: mm/N\nfrequency_hz,re,im\n" + rows(F, RE, IM))
+    (found,) = read_measurement(path)
+    assert found.unit == "m/N"
+    assert found.values == pytest.approx(H / 1e3)
 
 
 def test_sweeps_between_which_another_column_changed_are_not_averaged(tmp_path):

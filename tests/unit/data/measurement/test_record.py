@@ -8,6 +8,7 @@ from datetime import datetime, timedelta
 
 import numpy as np
 import pytest
+import scipy.io
 from scipy import signal
 
 import symflex
@@ -200,10 +201,112 @@ def test_times_stand_anywhere_and_counters_and_magnitudes_are_left_out():
 def test_a_time_is_not_suggested_for_a_frequency_and_may_have_another_unit(tmp_path):
     y = np.random.default_rng(1).normal(size=(64, 2))
     np.savez(tmp_path / "a.npz", t=np.arange(64) * 0.01, acc=y)
-    with pytest.raises(DataError, match="--columns t=t,u=NAME,y=NAME"):
-        read_measurement(tmp_path / "a.npz")
+    assert [one.name for one in read_measurement(tmp_path / "a.npz")] == ["acc 1", "acc 2"]
+    (found,) = read_measurement(tmp_path / "a.npz", "t=t,u=acc 1,y=acc 2")
+    assert found.name == "acc 2/acc 1"
     path = written(tmp_path, *y.T, head="22380416,1,2", times=22380416 + 2044 * np.arange(1, 65))
     assert any("t_us" in guess for guess in read_measurement(path, "t,u,y")[0].guesses)
+
+
+CHIRP = signal.chirp(np.arange(2000) * STEP, 1, 4.0, 60)
+PUSHED = signal.lfilter([1e-4], [1, -1.9, 0.96], CHIRP)
+
+
+@pytest.mark.parametrize(
+    ("head", "unit", "factors"),
+    [
+        ("t [s],F [N],x [mm]", "m/N", (1, 1e3)),
+        ("t;F;x\ns;kN;um", "m/N", (1e-3, 1e6)),
+        ("t_s,F_N,x_mm", "m/N", (1, 1e3)),
+        ("t/s,F/N,x/mm", "m/N", (1, 1e3)),
+        ("# units: s, N, mm\nt,F,x", "m/N", (1, 1e3)),
+        ("# unit: mm/N\nt,F,x", "m/N", (1, 1e3)),
+        ("# unit of x: mm\n# unit of F: N\nt,F,x", "m/N", (1, 1e3)),
+        ("time in s,force in N,position in mm", "m/N", (1, 1e3)),
+        ("Time,Channel A,Channel B\n(s),(V),(mV)\n", "1", (1, 1e3)),
+        ("X,CH1,CH2\nSecond,Volt,Volt", "1", (1, 1)),
+        ("time_s,u [V],omega [rpm]", "rad/(V*s)", (1, 30 / np.pi)),
+        ("time_s,u,omega", "", (1, 1)),
+        ("t,hammer [N],acc [g]", "m/(N*s^2)", (1, 1 / 9.80665)),
+        ("t,u [counts],y [V]", "", (1, 1)),
+    ],
+)
+def test_units_of_columns_scale_their_values(tmp_path, head, unit, factors):
+    u, y = (x * factor for x, factor in zip((CHIRP, PUSHED), factors, strict=True))
+    (found,) = read_measurement(written(tmp_path, u, y, head=head, sep=";" if ";" in head else ","))
+    (plain,) = read_measurement(written(tmp_path, CHIRP, PUSHED))
+    assert found.unit == unit
+    assert found.values == pytest.approx(plain.values, rel=1e-5)
+    is_said = any(word in guess for guess in found.guesses for word in ("times", "'counts'"))
+    assert is_said or set(factors) == {1}
+    assert (b"# unit: " in measurement_bytes(found, "a.csv")) == bool(unit)
+
+
+def test_a_frequency_in_prose_or_among_outputs_makes_no_response_of_a_record(tmp_path):
+    head = "# swept in frequency, up to 60 Hz\ntime,u,omega"
+    (found,) = read_measurement(written(tmp_path, CHIRP, PUSHED, head=head))
+    assert found.name == "omega/u"
+
+
+def test_a_constant_input_is_a_step_also_where_columns_are_named(tmp_path):
+    y = 1 - np.cos(6 * np.arange(400) * STEP) * np.exp(-3 * np.arange(400) * STEP)
+    path = written(tmp_path, np.full(400, 5.0), y, head="time_s,u,y")
+    (plain,), (asked,) = read_measurement(path), read_measurement(path, "t,u,y")
+    assert asked.values == pytest.approx(plain.values)
+
+
+def oscilloscope(t, y, *, is_quoted=False):
+    """Return a file of an oscilloscope that writes what it knows beside the samples."""
+    about = ["Record Length,2.0e+03,", "Sample Interval,2.0e-03,", *[",,"] * 4, "Source,CH2,"]
+    about += ["Vertical Units,mV,", "Horizontal Units,s,", "Model Number,TDS1012B,"]
+    about = [
+        f'"{a.partition(",")[0]}",{a.partition(",")[2]}' if is_quoted and a[0] != "," else a for a in about
+    ]
+    cells = [*about, *[",,"] * (len(y) - len(about))]
+    return "".join(f"{a},{b:.9f},{c:.6g},\r\n" for a, b, c in zip(cells, t, y, strict=True))
+
+
+@pytest.mark.parametrize("is_quoted", [False, True])
+def test_samples_behind_what_is_known_of_them_are_read_with_name_and_unit(tmp_path, is_quoted):
+    t = np.arange(2000) * STEP
+    ringing = 1e3 * np.exp(-3 * t) * np.sin(60 * t)
+    path = tmp_path / "tek.csv"
+    path.write_text(oscilloscope(t - 0.1, ringing, is_quoted=is_quoted), newline="")
+    record = read_record(str(path), path.read_bytes(), "tek")
+    assert record.step_s == pytest.approx(STEP)
+    assert dict(record.units) == {"CH2": "V"}
+    assert record.outputs[0][1] == pytest.approx(ringing / 1e3, abs=1e-5)
+    again = read_record(str(path), path.read_bytes(), "tek", "-,-,-,t,y")
+    assert again.outputs[0][1] == pytest.approx(record.outputs[0][1])
+
+
+def test_a_matrix_that_begins_at_rest_and_is_no_response_is_a_record(tmp_path):
+    t = np.arange(2000) * STEP
+    u = CHIRP * (t > 0)
+    y = signal.lfilter([0, 1e-4], [1, -1.9, 0.96], u)
+    np.savez(tmp_path / "a.npz", data=np.column_stack([t, u, y]))
+    (found,) = read_measurement(tmp_path / "a.npz")
+    assert found.name == "y/u"
+    assert any("is taken as the time" in guess for guess in found.guesses)
+    s = 2j * np.pi * np.arange(0, 50, 0.25)
+    response = 1 / (s**2 + 2 * s + 3600)
+    np.savez(tmp_path / "a.npz", data=np.column_stack([abs(s) / 6.2832, response.real, response.imag]))
+    with pytest.raises(DataError, match="--columns f,re,im"):
+        read_measurement(tmp_path / "a.npz")
+
+
+def test_signals_of_a_structure_with_start_and_increment_are_in_the_unit_of_their_axis(tmp_path):
+    t = np.arange(1000) * STEP
+    for label, step, expected in (("s", STEP, STEP), ("ms", 1e3 * STEP, STEP)):
+        x = {"start_value": 0.0, "increment": step, "quantity": {"label": label}}
+        values = {"values": np.exp(-3 * t) * np.sin(60 * t), "quantity": {"label": "g"}}
+        held = {"x_values": x, "y_values": values, "function_record": {"name": "Point1"}}
+        io_file = io.BytesIO()
+        scipy.io.savemat(io_file, {"Signal": held})
+        record = read_record("a.mat", io_file.getvalue(), "a")
+        assert record.step_s == pytest.approx(expected)
+        assert record.outputs[0][0] == "Point1"
+        assert record.units == {"Point1": "m/s^2"}
 
 
 def test_a_rate_above_the_columns_is_the_sampling_time():
