@@ -35,7 +35,7 @@ from symflex.roots.pole_zero_map import WITHOUT_END
 from symflex.transfer import BoundTransferFunction, TransferFunction
 from symflex.transfer.enclose import constant_tangent, enclosure, first_order
 from symflex.transfer.enclose_kernels import KernelValues
-from symflex.transfer.mirrored import times_image
+from symflex.transfer.mirrored import has_complex_waves, times_image
 from symflex.transfer.of_model import derive_nameless
 
 BITS = 64  # precision of values on boxes, which are far wider
@@ -79,6 +79,7 @@ class CharacteristicFunction:
     chosen: tuple[fmpz_mpoly, ...] | None = None  # factors in place of those of all poles
     are_positive: bool = False  # no parameter has a negative value in a box
     is_modal: bool = True  # values are sums over the roots of dispersions, which are sharp far from s = 0
+    is_alone: bool = False  # factors are never those of the product with the mirror image
 
     @classmethod
     def of(
@@ -89,11 +90,15 @@ class CharacteristicFunction:
         nameless = None
         if any(law.wavenumbers for law in tf.kernels.dispersions):
             nameless = derive_nameless(model, [(tf.output.name, tf.input.name)])[0].whole
-        return cls(tf, tuple(names), values, nameless, are_positive=are_positive)
+        is_alone = has_complex_waves(tf)  # of these the image has others
+        return cls(tf, tuple(names), values, nameless, are_positive=are_positive, is_alone=is_alone)
 
     @property
     def is_complex(self) -> bool:
-        """Whether coefficients are complex: factors are then those of the product with the mirror image."""
+        """Whether coefficients are complex, so that poles need no conjugates.
+
+        Factors are then those of the product with the mirror image, unless the function ``is_alone``.
+        """
         return self.tf.model.imaginary is not None
 
     @cached_property
@@ -105,7 +110,7 @@ class CharacteristicFunction:
         hidden = [h.polynomial for h in tf.hidden]
         moving = {name: _moving(tf, name) for name in self.names}
         moved = []
-        for f in factors_of(tf):
+        for f in factors_of(tf, with_images=not self.is_alone):
             moved_by = tuple(name for name, places in moving.items() if any(f.degrees()[i] for i in places))
             # Hidden poles that energy keeps out of the right half-plane do not change the verdict.
             if moved_by and not (f in hidden and self._rests_with(moved_by)):
@@ -152,7 +157,8 @@ class CharacteristicFunction:
 
     def depends_on(self, name: str) -> bool:
         """Tell whether a root depends on a parameter."""
-        return any(f.degrees()[i] for f in factors_of(self.tf) for i in _moving(self.tf, name))
+        every = factors_of(self.tf, with_images=not self.is_alone)
+        return any(f.degrees()[i] for f in every for i in _moving(self.tf, name))
 
     def whole(self, box: Box) -> OpenBox:
         """Return a box about which nothing is known yet."""
@@ -162,6 +168,8 @@ class CharacteristicFunction:
         last = Fraction(radius)
         marks = [last * 0, *(last / 2 ** (OCTAVES - k) for k in range(1, OCTAVES + 1))]
         pieces = tuple(pairwise(marks))
+        if self.is_complex and self.is_alone:
+            pieces = (*((-high, -low) for low, high in reversed(pieces)), *pieces)
         return OpenBox(box, radius, tuple(pieces for _ in self.factors))
 
     def _end(self, box: Box) -> float | str:
@@ -213,10 +221,10 @@ class CharacteristicFunction:
 
         With each stands what every parameter contributes to that, and a line.
         """
-        # Next to 0 one piece says of a small box what many said of a large one.
-        last = next((i for i, (one, two) in enumerate(pairwise(pieces)) if one[1] < two[0]), len(pieces) - 1)
-        if pieces and not pieces[0][0]:
-            pieces = [(pieces[0][0], pieces[last][1]), *pieces[last + 1 :]]
+        below = [piece for piece in pieces if piece[0] < 0]
+        above = [piece for piece in pieces if piece[0] >= 0]
+        mirrored = [(-high, -low) for low, high in reversed(below)]
+        pieces = [*((-high, -low) for low, high in reversed(_joined_at_0(mirrored))), *_joined_at_0(above)]
         on_path = FactorOnPath(slopes, entire, factor, *map(acb, path))
         search = branch(
             map(PathPiece, pieces),
@@ -315,11 +323,11 @@ class FactorOnPath:
         if not any(value.contains(0) for value, _ in around):
             return None
         turns = [slope * self.way for _, slope in around]
-        if not low:
+        if not (low and high):
             # Where the box alone leaves a root at the start, no shorter piece does without it.
             values = factors.swings(self.start, ones, near)
             share, weights = max((share_taken(c, terms) for c, terms in values), key=lambda each: each[0])
-            if share >= 1 and _is_within([turn * ball(high) for turn in turns], values):
+            if share >= 1 and _is_within([turn * ball(low + high) for turn in turns], values):
                 line = _line(*values[0], turns[0]) if len(ones) == 1 else ()
                 return OpenPiece(region.piece, weights, line)
         values = factors.swings(self.start + self.way * ball(point), ones, near)
@@ -341,7 +349,7 @@ class FactorOnPath:
                 begin, end = max(low, _fraction(roots.lower())), min(high, _fraction(roots.upper()))
         if begin > end:
             return None
-        if (is_open and is_spent) or (end - begin) * 2 ** current_bits() < end:
+        if (is_open and is_spent) or (end - begin) * 2 ** current_bits() < max(end, -begin):
             return OpenPiece((begin, end), weights, line)
         return Open(PathPiece((begin, end), 2 * (end - begin) < high - low))
 
@@ -404,6 +412,17 @@ class FirstOrder:
         return found
 
 
+def _joined_at_0(pieces: Sequence[Piece]) -> list[Piece]:
+    """Return pieces from 0 on, those that touch it as one.
+
+    That says of a small box what many said of a large one.
+    """
+    last = next((i for i, (one, two) in enumerate(pairwise(pieces)) if one[1] < two[0]), len(pieces) - 1)
+    return (
+        [(pieces[0][0], pieces[last][1]), *pieces[last + 1 :]] if pieces and not pieces[0][0] else [*pieces]
+    )
+
+
 def _is_within(steps: Sequence[acb], values: Sequence[tuple[acb, list[acb]]]) -> bool:
     """Tell whether a piece of the path contributes no more than the box does, or the box without end."""
     wide = sum((term.abs_upper() for _, terms in values for term in terms), arb(0))
@@ -447,7 +466,9 @@ def _moving(tf: TransferFunction, name: str) -> set[int]:
     return {ring.index[n] for n in (*moving, *waves, *(k.generator for k in kernels))}
 
 
-def factors_of(tf: TransferFunction, given: Sequence[fmpz_mpoly] | None = None) -> tuple[fmpz_mpoly, ...]:
+def factors_of(
+    tf: TransferFunction, given: Sequence[fmpz_mpoly] | None = None, *, with_images: bool = True
+) -> tuple[fmpz_mpoly, ...]:
     """Return all factors of the characteristic function, or those given, without powers of s alone."""
     ring = tf.ratio.ring
     alone = {
@@ -457,7 +478,7 @@ def factors_of(tf: TransferFunction, given: Sequence[fmpz_mpoly] | None = None) 
     every = given
     if every is None:
         every = [*(f for f, e in tf.den.factors if e > 0), *(h.polynomial for h in tf.hidden)]
-    if tf.model.imaginary:  # what meets the axis below 0 has an image that meets it above
+    if tf.model.imaginary and with_images:  # what meets the axis below 0 has an image that meets it above
         images = (times_image(Factored.polynomial(ring, each)).factors for each in every)
         every = [f for factors in images for f, _ in factors]
     return tuple(f for f in every if len(f) > 1 or not any(f.degrees()[i] for i in alone))

@@ -87,7 +87,7 @@ def stability_over(
         exact = replace(exact, margins=Margins(gain_margins(exact)))
     if exact is not None and exact.certified:
         return exact.of_parameter
-    function = characteristic(model, names, limits)
+    function = characteristic(model, names, limits, has_complex_waves=len(names) == 1)
     for parameter in parameters:
         if not function.depends_on(parameter.name):
             message = f"no pole of the model depends on '{parameter.name}'"
@@ -100,7 +100,8 @@ def stability_over(
     if isinstance(end, str) and end != VANISHES and PolesUpTo.serves(function):
         return exact.of_parameter if exact is not None and exact.intervals else search(end)
     halved = find_intervals(function, limits[0], digits, parameters[0], nominal[0])
-    halved = without_image(halved, function) if function.is_complex else halved
+    has_image = function.is_complex and not function.is_alone
+    halved = without_image(halved, function) if has_image else halved
     # Parts that boxes decide are proved for all poles; along the axis they may be counted up to a frequency.
     if halved.certified or (halved.intervals and halved.verdict.word != "unknown"):
         return halved
@@ -146,7 +147,12 @@ def with_values(model: Model, values: Mapping[str, Given] | None) -> Model:
 
 
 def characteristic(
-    model: Model, names: Sequence[str], ranges: Box, pair: tuple[str, str] | None = None
+    model: Model,
+    names: Sequence[str],
+    ranges: Box,
+    pair: tuple[str, str] | None = None,
+    *,
+    has_complex_waves: bool = False,
 ) -> CharacteristicFunction:
     """Return a model's characteristic function in some parameters; SF801 where it cannot be followed."""
     prepared = with_numbers(model, names, in_kernels=not is_tapered(model))
@@ -160,10 +166,11 @@ def characteristic(
     if pair is None:
         prepared = observed(prepared, seen[0])
     (tf,) = derive_all(prepared, [seen])
-    if prepared.imaginary:
-        real_product(tf.whole, "stability over a parameter")  # refused where there is none
     are_positive = all(low >= 0 for low, _ in ranges)
-    return CharacteristicFunction.of(prepared, tf.whole, names, are_positive=are_positive)
+    function = CharacteristicFunction.of(prepared, tf.whole, names, are_positive=are_positive)
+    if function.is_alone and not (has_complex_waves and PolesUpTo.serves(function)):
+        real_product(tf.whole, "stability over a parameter")  # refused: there is none
+    return function
 
 
 def _sweep(name: str) -> str:
@@ -436,7 +443,8 @@ def pair_that_crosses(
         turn = slope * acb(0, 1)
         status = status_of(two_steps(value, turn, rate), (rise, values.halves[0]))
         moves_right = bool((rate / turn).imag > 0)
-    return (2 if moves_right else -2) if status == "one" else 0
+    poles = 1 if function.is_complex else 2
+    return (poles if moves_right else -poles) if status == "one" else 0
 
 
 def _is_narrow(ends: Ends, limits: Ends, digits: int) -> bool:
@@ -449,7 +457,7 @@ def _joined(parts: Iterable[Ends], apart: Fraction = Fraction(0)) -> list[Ends]:
     """Return parts that touch as one, ascending, also those that a share of their upper end keeps apart."""
     joined: list[Ends] = []
     for low, high in sorted(parts):
-        if joined and low - joined[-1][1] <= apart * high:
+        if joined and low - joined[-1][1] <= apart * abs(high):
             joined[-1] = (joined[-1][0], max(high, joined[-1][1]))
         else:
             joined.append((low, high))

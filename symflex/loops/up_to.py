@@ -19,9 +19,9 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
-from itertools import islice, pairwise
-from math import ceil, inf, log2, pi
+from functools import cached_property, partial
+from itertools import chain, islice, pairwise
+from math import ceil, floor, inf, log2, pi
 from typing import Literal
 
 from flint import acb, acb_series, arb, fmpz_mpoly
@@ -81,17 +81,23 @@ class OpenPart:
 class Path:
     """The imaginary axis up to a frequency, or a quarter of a circle from the real axis up to it.
 
-    Shares of the axis grow with the root of the frequency, as waves of beams do.
+    Shares of the axis grow with the root of the frequency, as waves of beams do. Negative shares are those
+    of the lower half-plane, which mirrors the upper one if coefficients are real.
     """
 
     kind: Literal["axis", "arc"]
     end: Fraction  # frequency, or radius [rad/s]
     cells: int  # equal parts, each of which lies in a disc that is not large for the waves
+    signs: tuple[int, ...] = (1,)  # of the half-planes that are looked at
+
+    def frequency(self, share: Fraction) -> Fraction:
+        """Return that at a share of the axis [rad/s]."""
+        return self.end * share * abs(share)
 
     def at(self, share: Fraction) -> acb:
         """Return the point at a share of the path."""
         if self.kind == "axis":
-            return acb(0, ball(self.end * share**2))
+            return acb(0, ball(self.frequency(share)))
         return ball(self.end) * (acb(0, ball(share)) * arb.pi() / 2).exp()
 
     def box(self, piece: Piece) -> acb:
@@ -105,14 +111,14 @@ class Path:
         """Return a point in the middle of a piece."""
         low, high = piece
         if self.kind == "axis":
-            return acb(0, ball(self.end * (low**2 + high**2) / 2)).mid()
+            return acb(0, ball((self.frequency(low) + self.frequency(high)) / 2)).mid()
         return self.at((low + high) / 2).mid()
 
     def reach(self, piece: Piece) -> float:
         """Return how far a piece lies from its middle at most."""
         low, high = piece
         if self.kind == "axis":
-            return float(self.end * (high**2 - low**2) / 2) * (1 + ULP)
+            return float((self.frequency(high) - self.frequency(low)) / 2) * (1 + ULP)
         return float(self.end * (high - low)) * pi / 4 * (1 + ULP)
 
 
@@ -137,6 +143,7 @@ class PolesUpTo:
     @classmethod
     def of(cls, function: CharacteristicFunction, limits: Ends, radius: float | None, bits: int) -> PolesUpTo:
         """Return those up to a frequency [rad/s], without one up to a few waves of the longest element."""
+        function = replace(function, is_alone=True)
         if radius is None:
             last = limits[1] if _keeps_order(function, (limits[1],) * 2) else _middle(limits)
             moving = _kernel_functions(function, function.at_rest[1], last)
@@ -145,16 +152,15 @@ class PolesUpTo:
 
     @staticmethod
     def serves(function: CharacteristicFunction) -> bool:
-        """Tell whether the model has waves, and functions of these that are entire at s = 0, and no j."""
+        """Tell whether the model has waves, and functions of these that are entire at s = 0."""
         tf, _ = function.at_rest
-        return not function.is_complex and any(
-            kernel.function == "fundamental" for kernel in tf.kernels.kernels
-        )
+        return any(kernel.function == "fundamental" for kernel in tf.kernels.kernels)
 
     @property
     def whole(self) -> OpenPart:
         """The range, and the axis up to the widest circle for each factor that the parameter moves."""
-        marks = [Fraction(k, self._cells) for k in range(self._cells + 1)]
+        first = -self._cells if self.function.is_complex else 0
+        marks = [Fraction(k, self._cells) for k in range(first, self._cells + 1)]
         return OpenPart(self.limits, tuple(tuple(pairwise(marks)) for _ in self._moving))
 
     @cached_property
@@ -163,7 +169,8 @@ class PolesUpTo:
         return self._path("axis", self.radius * WIDER[-1])
 
     def _path(self, kind: Literal["axis", "arc"], end: Fraction) -> Path:
-        return Path(kind, end, self._cells // (2 if kind == "arc" else 1))
+        signs = (-1, 1) if self.function.is_complex else (1,)
+        return Path(kind, end, self._cells // (2 if kind == "arc" else 1), signs)
 
     @cached_property
     def _cells(self) -> int:
@@ -184,7 +191,7 @@ class PolesUpTo:
         tf, _ = self.function.at_rest
         every = [(f, e) for f, e in tf.den.factors if e > 0]
         every += [(h.polynomial, h.multiplicity) for h in tf.hidden]
-        return tuple((f, e) for f, e in every if factors_of(tf, [f]))
+        return tuple((f, e) for f, e in every if factors_of(tf, [f], with_images=False))
 
     @cached_property
     def _moving(self) -> list[int]:
@@ -204,10 +211,10 @@ class PolesUpTo:
         return _kernel_functions(self.function, [f for f, _ in self._factors], value)
 
     @cached_property
-    def _are_even(self) -> list[bool]:
+    def _are_real_on_axis(self) -> list[bool]:
         """Whether roots of each are proved to mirror each other in the axis, whatever the value."""
         parts = self._parts[-1]
-        return [f.is_even or (f.is_real and is_reversed(f.part, f.bound.kernels)) for f in parts]
+        return [f.is_real_on_axis or is_reversed(f.part, f.bound.kernels) for f in parts]
 
     def is_bare(self, ends: Ends) -> bool:
         """Tell whether a part is too near to where a wave equation loses its highest derivative.
@@ -288,7 +295,7 @@ class PolesUpTo:
 
     def _is_open(self, factor: int, found: Bound) -> bool:
         """Tell whether poles may leave the axis: without damping where two meet, and the slope is 0."""
-        return found.may_vanish and (found.may_turn or not self._are_even[factor])
+        return found.may_vanish and (found.may_turn or not self._are_real_on_axis[factor])
 
     def _is_free(self, values: PartValues, arc: Path) -> bool:
         """Tell whether no pole meets an arc in the right half-plane for any value in a part."""
@@ -304,7 +311,7 @@ class PolesUpTo:
         (low, high), ends = piece, values.ends
         known = None
         if path.kind == "arc" or path == self.axis:
-            known = self._patch(factor, path, int((low + high) / 2 * path.cells), ends)
+            known = self._patch(factor, path, floor((low + high) / 2 * path.cells), ends)
         if known is None and ends[0] < ends[1] and (ends[1] - ends[0]) * 2**DEEPEST > self._width:
             return Bound(True, True, 1.0, 0.0)
         if known is not None:
@@ -315,7 +322,7 @@ class PolesUpTo:
                 return found
         with precision(self.bits):
             # Next to s = 0 roots of dispersions meet; far out exponentials of matrices lose digits.
-            waves = path.cells * high if path.kind == "axis" else 2 * path.cells
+            waves = path.cells * max(-low, high) if path.kind == "axis" else 2 * path.cells
             sharper = values.near if waves <= FEW_WAVES else values.far
             return _directly(sharper, factor, path.box(piece), path.middle(piece))
 
@@ -371,17 +378,19 @@ class PolesUpTo:
         return None
 
     def _count(self, values: PartValues, factor: int, circle: Fraction) -> PoleCount | None:
-        """Return the same of one factor: the lower half of the plane mirrors the upper one."""
+        """Return the same of one factor, all over the disc if one half-plane mirrors the other."""
         arc, axis = self._path("arc", circle), self._path("axis", circle)
-        turn = self._turn(values, factor, arc)
-        if self._are_even[factor]:
+        turn, mirrors = self._turn(values, factor, arc), 2 // len(axis.signs)
+        if self._are_real_on_axis[factor]:
             pieces = self._pieces(values, factor, axis, most=1)
             crossed = sum(bool(self._ratio(values, factor, axis, each).real < 0) for each in pieces)
-            turns = (2 * turn / arb.pi()).unique_fmpz()
-            right = -1 if turns is None else int(turns) - 2 * crossed  # twice as many
-            return None if right < 0 or right % 2 else PoleCount(right // 2, 2 * crossed)
-        half = ((turn - self._turn(values, factor, axis)) / arb.pi()).unique_fmpz()
-        return None if half is None or half < 0 else PoleCount(int(half), 0)
+            crossed *= mirrors
+            turns = (mirrors * turn / arb.pi()).unique_fmpz()
+            right = -1 if turns is None else int(turns) - crossed  # twice as many
+            return None if right < 0 or right % 2 else PoleCount(right // 2, crossed)
+        turn -= self._turn(values, factor, axis)
+        inside = (mirrors * turn / (2 * arb.pi())).unique_fmpz()
+        return None if inside is None or inside < 0 else PoleCount(int(inside), 0)
 
     def _turn(self, values: PartValues, factor: int, path: Path) -> arb:
         """Return how far a factor turns on a path, on each piece of which it has no root."""
@@ -405,31 +414,36 @@ class PolesUpTo:
         """
         first, last = values.ends
 
-        def piece_of(low: float, high: float) -> Piece:
+        def piece_of(sign: int, low: float, high: float) -> Piece:
             # Poles meet an arc next to the axis, where it ends: looked at first, they end the search.
-            ends = Fraction(low), Fraction(high)
-            return ends if path.kind == "axis" else (1 - ends[1], 1 - ends[0])
+            shares = (Fraction(share) for share in (low, high))
+            ends = sorted(sign * (share if path.kind == "axis" else 1 - share) for share in shares)
+            return ends[0], ends[1]
 
-        def decide(low: float, high: float) -> bool | None:
-            found = self._bound(values, factor, path, piece_of(low, high))
+        def decide(sign: int, low: float, high: float) -> bool | None:
+            found = self._bound(values, factor, path, piece_of(sign, low, high))
             has_more = found.may_vanish and (found.may_turn or not most)
             if has_more and found.is_as_sharp_as_the_part and first < last:
                 raise UndecidedError  # no shorter piece serves
             return not has_more or None
 
-        pieces = covered(decide, path.cells, SHORTEST)
-        return sorted(piece_of(low, high) for low, high, _ in pieces)
+        return sorted(
+            piece_of(sign, low, high)
+            for sign in path.signs
+            for low, high, _ in covered(partial(decide, sign), path.cells, SHORTEST)
+        )
 
     def frequencies(self, part: OpenPart) -> tuple[tuple[Piece, ...], ...]:
         """Return the pieces of the axis in rad/s, as narrow as places where two poles meet are known."""
-        end = self.axis.end
-        found = []
+        at, found = self.axis.frequency, list[tuple[Piece, ...]]()
         for factor, pieces in zip(self._moving, part.pieces, strict=True):
-            places = [(low**2 * end, high**2 * end) for low, high in pieces]
-            if places and places[0][0] and self._are_even[factor]:
-                meeting = self._meeting(part.ends, factor, (places[0][0], places[-1][1]))
-                places = places if meeting is None else [meeting]
-            found.append(tuple(places))
+            every = [(at(low), at(high)) for low, high in pieces]
+            sides = [[p for p in every if p[0] < 0], [p for p in every if p[0] >= 0]]
+            for i, places in enumerate(sides):
+                if places and places[0][0] and places[-1][1] and self._are_real_on_axis[factor]:
+                    meeting = self._meeting(part.ends, factor, (places[0][0], places[-1][1]))
+                    sides[i] = places if meeting is None else [meeting]
+            found.append(tuple(chain(*sides)))
         return tuple(found)
 
     def _meeting(self, ends: Ends, factor: int, piece: Piece) -> Piece | None:

@@ -28,7 +28,7 @@ def mirrored(function: Function) -> Function | None:
     ring = function.ratio.ring
     if IMAGINARY not in ring.index:
         return function
-    if any(value.depends_on(IMAGINARY) for value in function.kernels.values):
+    if has_complex_waves(function):
         return None
     parts = function.parts and (times_image(function.parts[0]), times_image(function.parts[1]))
     hidden = tuple(
@@ -43,6 +43,12 @@ def mirrored(function: Function) -> Function | None:
     return replace(
         function, reduced=ratio, closed=None, hidden=hidden, parts=parts, with_waves=waves, solve=None
     )
+
+
+def has_complex_waves(function: Function) -> bool:
+    """Tell whether waves of a function have complex coefficients: its image has other waves."""
+    is_complex = IMAGINARY in function.ratio.ring.index
+    return is_complex and any(value.depends_on(IMAGINARY) for value in function.kernels.values)
 
 
 def times_image(value: Factored) -> Factored:

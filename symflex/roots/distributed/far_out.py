@@ -22,6 +22,7 @@ from symflex.algebra import LAPLACE, Dispersion, Factored, Ring, by_powers, degr
 from symflex.algebra.exponential_sum import REAL, Exponent, arguments_of
 from symflex.balls import at_centre, ball, precision
 from symflex.budget import spend
+from symflex.model.model import IMAGINARY
 from symflex.roots.functions.exponential_values import ExponentialValues, Valued, sums_of
 from symflex.roots.functions.kernel_function import SINGLE, TWINS
 from symflex.roots.pole_zero_map import WITHOUT_END
@@ -69,11 +70,17 @@ def right_tail(
     outweighs the others, as in undamped structures, whose poles lie along the axis without end, or where
     wavenumbers have no formula.
     """
+    ring, table = bound.ratio.ring, bound.kernels
+    has_j = IMAGINARY in ring.index and (
+        any(degree_in(f, ring.index[IMAGINARY]) for f in polynomials)
+        or any(value.depends_on(IMAGINARY) for value in table.values)
+    )
     with precision(BITS):
         # Sectors of a root of s, if the function is one of that.
         function = _sum_far_out(bound, polynomials, scales, -(-SECTORS // bound.sheets))
         if isinstance(function, str):
             return function
+        function = replace(function, is_real=not has_j)
         radius = _least(start, lambda r: function.dominant_terms(r) is not None)
         if radius is None and bound.sheets > 1:
             return NOT_OUTWEIGHED
@@ -279,6 +286,7 @@ class _SumFarOut:
     laws: tuple[Dispersion, ...]
     sectors: int  # from the real axis on, in which one term has to outweigh the others
     sheets: int = 1  # q of a function of ``s^(1/q)``, in whose sectors lower powers than that decay
+    is_real: bool = True  # else it has to outweigh them below the real axis, too
 
     def dominant_terms(self, radius: float) -> tuple[list[_Power], list[_Dominant]] | None:
         """Return, per sector, the term that outweighs all others from a radius on, else None."""
@@ -288,7 +296,8 @@ class _SumFarOut:
         terms, arguments = powers
         by_sector = {}
         # Next to the ends a sector is the most likely to fail.
-        for i in (self.sectors - 1, 0, *range(1, self.sectors - 1)):
+        below = () if self.is_real else range(-self.sectors, 0)
+        for i in (self.sectors - 1, 0, *range(1, self.sectors - 1), *below):
             own = _dominant(terms, _turned(arguments, i), arb(radius))
             if own is None:
                 return None

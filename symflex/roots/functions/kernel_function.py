@@ -18,12 +18,13 @@ from typing import Final
 
 from flint import acb, acb_series, arb, fmpz_mpoly
 
-from symflex.algebra import Dispersion, Factored, KernelTable, degree_in
+from symflex.algebra import LAPLACE, Dispersion, Factored, KernelTable, degree_in
 from symflex.algebra.exponential_sum import REAL, Exponent, combination
 from symflex.algebra.vanishing import OriginSeries
 from symflex.balls import Value, at_centre, expansion, precision, precisions
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
+from symflex.model.model import IMAGINARY
 from symflex.roots.functions.entire import FactorBall, Sample
 from symflex.roots.functions.exponential_values import ExponentialValues, Place, Summed, exponential_sums
 from symflex.roots.problem import is_complex
@@ -79,7 +80,7 @@ class KernelFunction:
     def is_central(self) -> bool:
         """Proved: F(-s) is F(s) or -F(s), so that -s is a root if s is."""
         used = (k for k in self.bound.kernels.kernels if self.part.depends_on(k.generator))
-        return self._turns_round and not any(kernel.function == "exp" for kernel in used)
+        return self._turns_round_with(LAPLACE) and not any(kernel.function == "exp" for kernel in used)
 
     @property
     def is_paired(self) -> bool:
@@ -87,9 +88,18 @@ class KernelFunction:
         return self.is_real or self.is_central
 
     @cached_property
+    def is_real_on_axis(self) -> bool:
+        """Proved: F is real on the imaginary axis, or j times that, so that roots mirror each other in it.
+
+        That is so where s and j, both with another sign, leave F but for a sign.
+        """
+        used = (k for k in self.bound.kernels.kernels if self.part.depends_on(k.generator))
+        return self._turns_round_with(LAPLACE, IMAGINARY) and not any(k.function == "exp" for k in used)
+
+    @cached_property
     def is_mirrored(self) -> bool:
         """Proved: F(-s) is F(s) or -F(s) times an exponential, as of ``1 + exp(-2 s)``, so that roots do."""
-        return self.is_real and self._turns_round
+        return self.is_real and self._turns_round_with(LAPLACE)
 
     @cached_property
     def is_real(self) -> bool:
@@ -101,8 +111,9 @@ class KernelFunction:
         names = (*law.wavenumbers, *(k.generator for k in self.bound.kernels.kernels_of(law)))
         return any(self.part.depends_on(name) for name in names)
 
-    @cached_property
-    def _turns_round(self) -> bool:
+    def _turns_round_with(self, *names: str) -> bool:
+        """Tell whether F stays as it is, but for a sign, if s, or s and j, have the other sign."""
+        turning = [i for name, i in self.part.ring.index.items() if name in names]
         kernels = [k for k in self.bound.kernels.kernels if self.part.depends_on(k.generator)]
         # Another part's dispersion relation may be lopsided.
         laws = [law for law in self.bound.kernels.dispersions if self._uses(law)]
@@ -110,10 +121,12 @@ class KernelFunction:
         odd = [k.dispersion.shift for k in decays if not (k.wavenumber or k.length.depends_on("s"))]
         even = [value for law in laws for value in law.coefficients if value is not law.shift]
         places = [self.part.ring.index[k.generator] for k in decays]
-        signs = [([_parity(f) for f, _ in v.factors], [e for _, e in v.factors]) for v in (*odd, *even)]
+        signs = [
+            ([_parity(f, turning) for f, _ in v.factors], [e for _, e in v.factors]) for v in (*odd, *even)
+        ]
         return (
             len(odd) == len(decays)
-            and all(_turned(f, places) in (f, -f) for f, _ in self.part.factors)
+            and all(_turned(f, turning, places) in (f, -f) for f, _ in self.part.factors)
             and all(None not in parities for parities, _ in signs)
             and [sum((p or 0) * e for p, e in zip(*s, strict=True)) % 2 for s in signs]
             == [1] * len(odd) + [0] * len(even)
@@ -403,18 +416,19 @@ def other_branches(
     return branches
 
 
-def _parity(polynomial: fmpz_mpoly) -> int | None:
-    """Return whether all powers of s are even (0) or odd (1), ``None`` when neither."""
-    parities = {int(monomial[0]) % 2 for monomial in polynomial.monoms()}
+def _parity(polynomial: fmpz_mpoly, turning: Sequence[int]) -> int | None:
+    """Return whether all powers of s, or of s and j, are even (0) or odd (1), ``None`` when neither."""
+    parities = {sum(int(monomial[i]) for i in turning) % 2 for monomial in polynomial.monoms()}
     return parities.pop() if len(parities) == 1 else None
 
 
-def _turned(polynomial: fmpz_mpoly, decays: Sequence[int]) -> fmpz_mpoly:
+def _turned(polynomial: fmpz_mpoly, turning: Sequence[int], decays: Sequence[int]) -> fmpz_mpoly:
     """Return a polynomial at -s, times exponentials: decays at some places are one over themselves there."""
     terms = [(list(map(int, monomial)), c) for monomial, c in polynomial.terms()]
     ends = {i: max(m[i] for m, _ in terms) + min(m[i] for m, _ in terms) for i in decays}
     turned = {
-        tuple(ends[i] - e if i in ends else e for i, e in enumerate(m)): -c if m[0] % 2 else c
+        tuple(ends[i] - e if i in ends else e for i, e in enumerate(m)): (-1) ** sum(m[i] for i in turning)
+        * c
         for m, c in terms
     }
     return polynomial.context().from_dict(turned)

@@ -1,5 +1,6 @@
 """Stable values of models with complex coefficients: rotors in x + jy and machines in d + jq."""
 
+from itertools import pairwise
 from math import pi, sqrt
 
 import mpmath
@@ -100,17 +101,103 @@ def test_a_chart_counts_poles_of_the_model_alone():
     assert chart.at(NATURAL * (1 + 200 / 150) + 50, 200) == "unstable by 1"
 
 
-def test_waves_with_complex_coefficients_are_refused():
-    model = symflex.loads(
-        """symflex = 1
-        parameters = { EI = "1200 N*m^2", rhoA = "3.9 kg/m", l = "0.4 m", tau = "20 us", W = "100 rad/s" }
-        inputs = { F = { unit = "N" } }
-        outputs = { R = "w(l)" }
-        [fields.w]
-        domain = ["0", "l"]
-        equation = "EI*(1 + tau*(s - j*W))*w'''' + rhoA*s^2*w = 0"
-        conditions = ["w(0) = 0", "w'(0) = 0", "w''(l) = 0", "EI*(1 + tau*(s - j*W))*w'''(l) = -F"]
-        """
+SHAFT = """symflex = 1
+parameters = {{ c = 1, c_i = {c_i}, W = 3 }}
+inputs = {{ M = {{}} }}
+outputs = {{ Y = "w'({at})" }}
+[fields.w]
+domain = ["0", "1"]
+equation = "{equation} + s^2*w = 0"
+conditions = ["w(0) = 0", {ends}]
+"""
+VISCOUS = {"c_i": 2, "at": 1, "ends": '"w\'\'(0) = 0", "w(1) = 0", "w\'\'(1) = M"'}
+
+
+@pytest.mark.parametrize("equation", ["w'''' + c*s*w + c_i*(s - j*W)*w", "s*c*w + c_i*(s + W/j)*w + w''''"])
+def test_a_shaft_with_viscous_damping_inside_whirls_as_its_first_mode_does(equation):
+    # s^2 + c s + c_i (s - j W) + pi^4 = 0 has a root j w where w = pi^2 and c w + c_i (w - W) = 0.
+    model = symflex.loads(SHAFT.format(equation=equation, **VISCOUS))
+    found = model.stability(over="W", limits=(14, 15), up_to_hz=2)
+    assert not found.certified
+    assert ends(found) == [(pytest.approx(1.5 * pi**2, rel=1e-13), [pytest.approx(pi**2, rel=1e-13)], 1)]
+    assert [(i.poles.right, i.poles.axis) for i in found.proved.intervals] == [(0, 0), (1, 0)]
+    turned = symflex.loads(SHAFT.format(equation=equation.replace("j", "(-j)"), **VISCOUS))
+    found = turned.stability(over="W", limits=(14, 15), up_to_hz=2)
+    assert ends(found) == [(pytest.approx(1.5 * pi**2, rel=1e-13), [pytest.approx(-(pi**2), rel=1e-13)], 1)]
+
+
+@pytest.mark.parametrize("sign", ["", "-"])
+def test_all_poles_of_a_string_with_damping_inside_are_counted(sign):
+    # The same of -w'' with pi^2 in place of pi^4; all others whirl later.
+    equation = f"-w'' + c*s*w + c_i*(s - {sign}j*W)*w".replace("--", "+")
+    model = symflex.loads(SHAFT.format(c_i=2, at=1, ends='"w(1) = M"', equation=equation))
+    found = model.stability(over="W", limits=(4.6, 4.8))
+    omega = -pi if sign else pi
+    assert found.certified and found.proved.is_complete
+    assert ends(found) == [(pytest.approx(1.5 * pi, rel=1e-13), [pytest.approx(omega, rel=1e-13)], 1)]
+
+
+@pytest.mark.slow
+def test_all_poles_of_a_shaft_with_material_damping_are_counted():
+    # s^2 + c s + pi^4 (1 + c_i (s - j W)) = 0 where w = pi^2 and c w + c_i pi^4 (w - W) = 0.
+    ends_of = VISCOUS["ends"].replace("w''(1)", "(1 + c_i*(s - j*W))*w''(1)")
+    text = SHAFT.format(c_i=0.01, at=1, ends=ends_of, equation="(1 + c_i*(s - j*W))*w'''' + c*s*w")
+    found = symflex.loads(text).stability(over="W", limits=(19, 21))
+    assert found.certified
+    onset = pi**2 + 1 / (0.01 * pi**2)
+    assert ends(found) == [(pytest.approx(onset, rel=1e-13), [pytest.approx(pi**2, rel=1e-13)], 1)]
+
+
+@pytest.mark.slow
+def test_poles_of_a_disc_on_a_shaft_stay_on_the_axis_at_every_speed():
+    # EI = rhoA = l = 1 with m = J_d = 1, J_p = 2: F(w) is real, and changes its sign twice below 4 rad/s.
+    text = SHAFT.format(
+        c_i=1,
+        at=1,
+        equation="w''''",
+        ends="\"w'(0) = 0\", \"w''(1) = -(s^2 - 2*j*W*s)*w'(1)\", \"w'''(1) = s^2*w(1) - M\"",
     )
+
+    def disc(omega, speed):
+        x = mpmath.sqrt(abs(omega))
+        c, s, ch, sh = mpmath.cos(x), mpmath.sin(x), mpmath.cosh(x), mpmath.sinh(x)
+        rows = [  # w = cosh - cos and sinh - sin, of k x
+            [x**2 * (ch + c), x**2 * (sh + s), x * (sh + s), x * (ch - c)],
+            [x**3 * (sh - s), x**3 * (ch + c), ch - c, sh - s],
+        ]
+        turn = omega**2 - 2 * speed * omega
+        one, two = ([row[i] for i in (0, 1)] for row in rows)
+        bend = [one[i] - turn * rows[0][2 + i] for i in (0, 1)]
+        shear = [two[i] + omega**2 * rows[1][2 + i] for i in (0, 1)]
+        return bend[0] * shear[1] - bend[1] * shear[0]
+
+    signs = [mpmath.sign(disc(mpmath.mpf(k) / 50 + 0.003, 3)) for k in range(-200, 200)]
+    changes = sum(a != b for a, b in pairwise(signs))
+    found = symflex.loads(text).stability(over="W", limits=(2.99, 3.01), up_to_hz=4 / (2 * pi), digits=8)
+    assert [(i.poles.right, i.poles.axis) for i in found.proved.intervals] == [(0, changes)]
+
+
+@pytest.mark.slow
+def test_a_column_seen_from_turning_axes_flutters_at_becks_load():
+    # s + j W in place of s: pairs meet at 20.0509... at -W +- 11.0155... (Beck 1952).
+    clamped = "\"w'(0) = 0\", \"w''(1) = 0\", \"w'''(1) = -M\""
+    text = SHAFT.format(c_i=10, at=1, ends=clamped, equation="w'''' + c_i*w'' + 2*j*W*s*w - W^2*w")
+    found = symflex.loads(text).stability(over="c_i", limits=(20, 20.1), up_to_hz=3, digits=10)
+    ((load, frequencies, entering),) = ends(found)
+    assert load == pytest.approx(20.0509536189737, rel=1e-10)
+    assert frequencies == pytest.approx([-3 - 11.0155576409229, -3 + 11.0155576409229], rel=1e-10)
+    assert entering == 2
+
+
+def test_a_string_that_moves_stays_on_the_axis_in_turning_axes():
+    # s = -j W + j n pi (1 - v^2), which lie at -4.86, 0.86, 3.72 and 6.58 rad/s up to 7.5.
+    equation = "-(1 - c^2)*w'' + 2*c*(s + j*W)*w' + 2*j*W*s*w - W^2*w"
+    text = SHAFT.format(c_i=1, at=1, ends='"w(1) = M"', equation=equation).replace("c = 1", "c = 0.3")
+    found = symflex.loads(text).stability(over="W", limits=(2, 2.1), up_to_hz=1.2, digits=8)
+    assert [(i.poles.right, i.poles.axis) for i in found.proved.intervals] == [(0, 4)]
+
+
+def test_over_two_parameters_waves_with_complex_coefficients_are_refused():
+    model = symflex.loads(SHAFT.format(equation="w'''' + c*s*w + c_i*(s - j*W)*w", **VISCOUS))
     with pytest.raises(ModelError, match="waves that have complex coefficients"):
-        model.stability(over="W", limits=(50, 150))
+        model.stability(over=("W", "c"), ranges={"W": (14, 15), "c": (1, 2)})
