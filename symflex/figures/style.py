@@ -15,7 +15,7 @@ from matplotlib.mathtext import MathTextParser
 
 from symflex.errors import Diagnostic, UsageError, nearest
 from symflex.model import Input, Output
-from symflex.model.labels import GREEK
+from symflex.papers.labels import GREEK
 from symflex.print.label import read_label
 
 if TYPE_CHECKING:

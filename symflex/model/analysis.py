@@ -5,9 +5,10 @@ Whether the names of a printed formula are known is told from its tree.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from itertools import islice
 from typing import TYPE_CHECKING
 
@@ -21,10 +22,12 @@ from symflex.expressions import (
     Expression,
     Name,
     Power,
+    Sum,
     names,
     names_among,
     nodes,
     parse,
+    substitute,
     sum_of,
 )
 from symflex.model.model import PI_NEARLY, TRANSFORMER_SYMBOLS, Analysis, DrawingHints, Figure, Published
@@ -37,6 +40,7 @@ from symflex.quantities import IMAGINARY_NAMES, Quantity, unit_of
 if TYPE_CHECKING:
     from symflex.model.model import Model, ModelParameter, NamedExpressions
     from symflex.model.reading import Reader
+    from symflex.papers.formula import PaperNotation
 
 ANALYSIS_KEYS = ("band", "data_end", "modes", "digits", "print", "prefer")
 FIGURE_KEYS = ("kind", "of", "gain", "over", "range", "band", "until", "at", "data", "title", "doc")
@@ -340,7 +344,42 @@ def _kind(reader: Reader, table: TableValue, entry: KeyValue, what: str) -> str:
     return text.value if text else ""
 
 
-def read_published(reader: Reader, section: TableValue | None, model: Model) -> tuple[Published, ...]:
+def read_notation(reader: Reader, section: TableValue | None, model: Model) -> tuple[tuple[str, str], ...]:
+    """Return the symbols of a paper, as they are typed in LaTeX, with the names they have in the model."""
+    tied: list[tuple[str, str]] = []
+    known = {LAPLACE, "pi", *(name for name, _ in labelled_names(model))}
+    for entry in section.entries if section else ():
+        text = reader.string(entry, f"'{entry.key[:80]}' of [notation]")
+        if text is not None and text.value not in known:
+            close = nearest(text.value, known) if len(known) <= COMPARED_NAMES else None
+            hint = close or "write a parameter, a definition, an input, an output or s"
+            reader.note("SF210", f"unknown name '{text.value[:64]}' in [notation]", text.span, hint)
+        elif text is not None:
+            tied.append((entry.key, text.value))
+    return tuple(tied)
+
+
+def labelled_names(model: Model) -> list[tuple[str, str]]:
+    """Return the names of what printed formulas may contain, and of outputs and inputs, with their labels."""
+    groups = (model.parameters, model.definitions, model.outputs, model.inputs)
+    return [(item.name, item.latex) for group in groups for item in group]
+
+
+def notation_of_model(
+    model: Model, symbols: Iterable[tuple[str, str]], printed: Iterable[str] = ()
+) -> PaperNotation:
+    """Return what the symbols of a paper mean; ``printed`` are names that the formula's own lines give."""
+    from symflex.papers.formula import notation_of  # few specifications hold LaTeX
+
+    varying = {item.name for group in (model.outputs, model.inputs) for item in group}
+    named = [*labelled_names(model), *((name, "") for name in printed)]
+    constant = {item.name for group in (model.parameters, model.definitions) for item in group}
+    return notation_of(named, varying - constant, symbols)
+
+
+def read_published(
+    reader: Reader, section: TableValue | None, model: Model, symbols: Sequence[tuple[str, str]] = ()
+) -> tuple[Published, ...]:
     """Return the printed formulas; :mod:`symflex.model.analysis` checks their names."""
     published: list[Published] = []
     pairs = named_pairs(model) if section else {}
@@ -350,18 +389,74 @@ def read_published(reader: Reader, section: TableValue | None, model: Model) -> 
         table = reader.table(entry, what, 'for instance { expr = "1/(m*s^2 + k)" }')
         if table is None or tf is None:
             continue
-        reader.keys(table, ("expr", "where", "scale", "source", "doc"), what)
-        expr = reader.needed(table, "expr", entry, f"{what} has no 'expr'")
+        reader.keys(table, ("expr", "latex", "where", "scale", "source", "doc"), what)
+        latex, where = table.get("latex"), _where(reader, table, what)
+        if latex is not None and (twice := table.get("expr")) is not None:
+            reader.note("SF208", f"{what} has both 'expr' and 'latex'", twice.key_span, "keep one of them")
+            continue
+        expr = latex or reader.needed(table, "expr", entry, f"{what} has no 'expr' or 'latex'")
         if expr is None:
             continue
-        expression = reader.expression(expr.value, what, quantities=False)
-        where = _where(reader, table, what)
+        if latex is None:
+            expression = reader.expression(expr.value, what, quantities=False)
+        else:
+            notation = notation_of_model(model, symbols, (name for name, _ in where or ()))
+            read = reader.read(
+                partial(_from_latex, notation=notation), reader.string(latex, f"latex of {what}")
+            )
+            expression, lines = read or (None, ())
+            where = None if where is None else (*where, *lines)
         scale = table.get("scale")
         scaled = reader.expression(scale.value, f"scale of {what}", quantities=False) if scale else None
         cited = reader.plain(table, "source", what)
         if expression is not None and where is not None and (scaled is not None or not scale):
-            published.append(Published(tf, expression, where, scaled, cited, entry.key_span))
+            given = Published(tf, expression, where, scaled, cited, entry.key_span, latex is not None)
+            published.append(given)
     return tuple(published)
+
+
+def _from_latex(text: Text, notation: PaperNotation) -> tuple[Expression, NamedExpressions]:
+    from symflex.papers.formula import read_latex  # few specifications hold LaTeX
+
+    return read_latex(text, notation)
+
+
+CANDIDATES = 4  # parameters that a symbol without a meaning could be, as a hint lists them
+
+
+def with_candidates(problems: Sequence[Diagnostic], published: Published, model: Model) -> list[Diagnostic]:
+    """Return problems of a formula in LaTeX; with what a symbol without a meaning could be."""
+    from symflex.model.units import constant_measure  # most formulas are right
+
+    expressions = [published.expression, *(e for _, e in published.where)]
+    measure = constant_measure([], model.parameters, model.definitions)
+    used = {n.name for e in expressions for n in names(e) if isinstance(n, Name)}
+
+    def disagreeing(name: str, other: ModelParameter) -> int:
+        sums = {
+            n
+            for e in expressions
+            for n in nodes(substitute(e, {name: Name(other.name)}))
+            if isinstance(n, Sum)
+        }
+        terms = ([measure(term) for term in part.terms] for part in sums)
+        return sum(len({d for d in dimensions if d is not None}) > 1 for dimensions in terms)
+
+    found: list[Diagnostic] = []
+    for problem in problems:
+        node = next(
+            (n for e in expressions for n in names(e) if n.span == problem.span and isinstance(n, Name)), None
+        )
+        if problem.code != "SF210" or problem.span is None or node is None:
+            found.append(problem)
+            continue
+        counts = {p: disagreeing(node.name, p) for p in model.parameters if p.name not in used}
+        fitting = [p for p in counts if counts[p] == min(counts.values())]
+        listed = ", ".join(f"{p.name} [{p.unit or 1}]" for p in fitting[:CANDIDATES])
+        could = f"; by its place it could be {listed}" if listed else ""
+        hint = f"tie it in [notation]: '{problem.span.text[:40]}' = \"...\"{could}; or define it in 'where'"
+        found.append(replace(problem, hint=hint))
+    return found
 
 
 def _where(reader: Reader, table: TableValue, what: str, key: str = "where") -> NamedExpressions | None:

@@ -10,7 +10,6 @@ from typing import cast
 
 from symflex.errors import Diagnostic, Span, Text
 from symflex.expressions import FUNCTIONS, names, names_among, parse
-from symflex.model.labels import check_label
 from symflex.model.model import (
     ONE,
     PI_NEARLY,
@@ -24,6 +23,7 @@ from symflex.model.model import (
 from symflex.model.reading import NAME, Reader
 from symflex.model.scope import RESERVED
 from symflex.model.spec import KeyValue, NumberValue, StringValue, TableValue, Value
+from symflex.papers.labels import check_label
 from symflex.quantities import (
     DIMENSIONLESS,
     Quantity,

@@ -382,6 +382,7 @@ class Published:
     scale: Expression | None = None
     source: str = ""
     span: Span | None = field(default=None, compare=False, repr=False)
+    is_latex: bool = False  # read from LaTeX
 
 
 @dataclass(frozen=True, slots=True)
@@ -413,6 +414,7 @@ class Model:
     figures: tuple[Figure, ...] = ()
     drawing: DrawingHints = DrawingHints()
     published: tuple[Published, ...] = ()
+    notation: tuple[tuple[str, str], ...] = ()  # symbols of a paper, as typed in LaTeX, and their names here
     signal_units: tuple[tuple[Variable, Dimension], ...] = ()
     quotients: tuple[tuple[tuple[str, str], Dimension], ...] = ()
     operating_point: OperatingPoint | None = None

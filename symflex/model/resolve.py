@@ -21,8 +21,10 @@ from symflex.model.analysis import (
     read_analysis,
     read_drawing,
     read_figures,
+    read_notation,
     read_published,
     readable_names,
+    with_candidates,
 )
 from symflex.model.blocks import Loads, Origin, read_blocks
 from symflex.model.boundary import (
@@ -208,7 +210,10 @@ def _with_requests(
         analysis=read_analysis(reader, sections["analysis"]),
         figures=read_figures(requests, sections["figures"], model),
         drawing=read_drawing(hints, sections["drawing"], model),
-        published=tuple(map(cycles.printed, read_published(requests, sections["published"], model))),
+        notation=(notation := read_notation(requests, sections["notation"], model)),
+        published=tuple(
+            map(cycles.printed, read_published(requests, sections["published"], model, notation))
+        ),
     )
     model = _with_names_in_print(reader, requests, model, broken, cycles)
     # A transfer function is missing where its output or input could not be read: no second mistake.
@@ -230,7 +235,8 @@ def _with_names_in_print(
             message = f"'{name}' in print of [analysis] has a meaning already"
             reader.note("SF213", message, expression.span, "give the combination of parameters another name")
     for published in (*model.published, *([] if {n for n, _ in analysis.where} & meant else [analysis])):
-        later.take(check_printed(published, readable))
+        problems = check_printed(published, readable)
+        later.take(with_candidates(problems, published, model) if published.is_latex else problems)
     return replace(model, analysis=replace(model.analysis, print=analysis.where))
 
 

@@ -22,10 +22,10 @@ from symflex.library.elements import COMPONENT_DOMAIN, ELEMENTS, Element, Port
 from symflex.model.analysis import ANALYSIS_KEYS, DIGITS_LIMIT, FIGURE_KEYS, FIGURE_KINDS, MODES_LIMIT
 from symflex.model.declarations import ASSUMPTIONS
 from symflex.model.headings import FORMAT_VERSION, NEEDED
-from symflex.model.labels import LABEL_LIMIT
 from symflex.model.model import INPUT_KINDS, TRANSFORMER_SYMBOLS
 from symflex.model.reading import NAME
 from symflex.model.scope import RESERVED
+from symflex.papers.labels import LABEL_LIMIT
 
 Schema = dict[str, Any]
 
@@ -67,6 +67,11 @@ def json_schema() -> Schema:
             "type": "object",
             "description": "printed formulas",
             "additionalProperties": _printed(),
+        },
+        "notation": {
+            "type": "object",
+            "description": "names of the symbols that a paper uses",
+            "additionalProperties": TEXT,
         },
         "analysis": _analysis(),
         "figures": _table(_figure(), "figures of reports"),
@@ -241,12 +246,13 @@ def _field() -> Schema:
 def _printed() -> Schema:
     keys = {
         "expr": _said(VALUE, "formula as printed"),
+        "latex": _said(TEXT, "formula as the paper types it, in place of expr"),
         "where": _said({"type": "object", "additionalProperties": VALUE}, "abbreviations in it"),
         "scale": _said(VALUE, "factor between it and the derived one"),
         "source": _said(TEXT, "where it is printed"),
         "doc": TEXT,
     }
-    return _closed(keys, ["expr"])
+    return {**_closed(keys), "oneOf": [{"required": ["expr"]}, {"required": ["latex"]}]}
 
 
 def _count(most: int, description: str) -> Schema:

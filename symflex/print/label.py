@@ -18,7 +18,7 @@ from itertools import starmap
 from string import ascii_lowercase
 from typing import Final, NamedTuple
 
-from symflex.model.labels import ACCENTS, GREEK, SYMBOLS
+from symflex.papers.labels import ACCENTS, GREEK, SYMBOLS
 from symflex.print.width import (
     COMMA_SIZES,
     FENCE_SIZES,

@@ -19,8 +19,8 @@ from symflex.figures.s_plane import RootMark, choose_view, leaving
 from symflex.figures.style import label_of, label_of_name, label_of_tf, label_of_unit
 from symflex.model import Output
 from symflex.model.analysis import FIGURE_KINDS
-from symflex.model.labels import ACCENTS, FONTS, GREEK, SYMBOLS
 from symflex.options import FitOptions
+from symflex.papers.labels import ACCENTS, FONTS, GREEK, SYMBOLS
 from symflex.transfer import bind
 from tests.unit.analysis.systems import derived, rational
 from tests.unit.refusals import refusal

@@ -3,6 +3,7 @@
 import pytest
 
 from symflex.errors import Source, SpecError
+from symflex.expressions import format_expression
 from symflex.model import load_model
 
 MODEL = """symflex = 1
@@ -69,3 +70,37 @@ def test_a_name_with_a_mistake_of_its_own_is_not_called_unknown():
     with pytest.raises(SpecError) as caught:
         load_model(Source("spec.toml", text))
     assert [d.code for d in caught.value.diagnostics] == ["SF201"]
+
+
+def with_latex(latex, notation=""):
+    text = f"{MODEL}latex = '{latex}'\n[notation]\n{notation}\n"
+    return load_model(Source("spec.toml", text))
+
+
+def test_a_formula_in_latex_is_the_same_formula():
+    (published,) = with_latex(
+        r"\frac{X(s)}{F(s)} = \frac{1}{m(s^2 + \omega_0^2)}, \text{ where } \omega_0 = \sqrt{k/m}"
+    ).published
+    assert format_expression(published.expression) == "1/(m*(s^2 + omega_0^2))"
+    assert [(name, format_expression(line)) for name, line in published.where] == [("omega_0", "sqrt(k/m)")]
+
+
+def test_notation_ties_symbols_of_a_paper():
+    (published,) = with_latex(r"\frac{1}{Mp^2 + c_{1}}", 'M = "m"\np = "s"\n"c_{1}" = "k"').published
+    assert format_expression(published.expression) == "1/(m*s^2 + k)"
+    with pytest.raises(SpecError, match=r"unknown name 'kk' in \[notation\]"):
+        with_latex("1", 'M = "kk"')
+
+
+def test_a_symbol_without_a_meaning_is_named_with_what_fits_its_place():
+    with pytest.raises(SpecError) as caught:
+        with_latex(r"\frac{1}{M s^2 + k}")
+    (problem,) = caught.value.diagnostics
+    assert problem.code == "SF210"
+    assert (problem.span.line, problem.span.text) == (15, "M")
+    assert "it could be m [kg]" in problem.hint
+
+
+def test_a_formula_is_given_once():
+    with pytest.raises(SpecError, match="both 'expr' and 'latex'"):
+        load_model(Source("spec.toml", f"{MODEL}expr = '1'\nlatex = '1'\n"))

@@ -8,7 +8,7 @@ import pytest
 from symflex import pipeline
 from symflex.algebra import FUNCTIONS
 from symflex.expressions import Name, number, power, product_of, sum_of
-from symflex.model.labels import ALLOWED_COMMANDS
+from symflex.papers.labels import ALLOWED_COMMANDS
 from symflex.print.forms import PrintedForm, print_form
 from symflex.print.forms.printed import forms_of
 from symflex.print.latex import inline_latex, label_of, latex_fragment, notebook_latex

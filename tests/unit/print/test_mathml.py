@@ -25,7 +25,7 @@ from symflex.expressions import (
     quotient,
     sum_of,
 )
-from symflex.model.labels import ACCENTS, FONTS, GREEK, LABEL_LIMIT, SYMBOLS
+from symflex.papers.labels import ACCENTS, FONTS, GREEK, LABEL_LIMIT, SYMBOLS
 from symflex.print.forms import print_form
 from symflex.print.latex import model_labels
 from symflex.print.mathml import (
