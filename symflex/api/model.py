@@ -65,7 +65,7 @@ class Model:
     Parameters
     ----------
     parameters, definitions, elements, signals, equations, operating_point, energy : mapping
-    blocks, fields, inputs, outputs, analysis, figures, drawing, published, notation : mapping
+    blocks, fields, inputs, outputs, analysis, figures, drawing, published, notation, tables : mapping
         The tables of the specification language, as Python mappings of the same shape.
     title, source : str
         What the model is and where it comes from.
@@ -110,6 +110,7 @@ class Model:
         drawing: Table | None = None,
         published: Table | None = None,
         notation: Table | None = None,
+        tables: Table | None = None,
         title: str = "",
         source: str = "",
     ) -> None:

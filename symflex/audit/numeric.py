@@ -63,8 +63,8 @@ class Numbers:
             for name, value in self.values.items():
                 point[name] = acb(ball(value.rational) * arb.pi() ** value.pi_power)
             for name, expression in self.formula.lines:
-                point[name] = _value(expression, point)
-            return _value(self.formula.whole, point)
+                point[name] = value_of(expression, point)
+            return value_of(self.formula.whole, point)
 
     def ratio_at(self, frequency: float) -> tuple[float, float] | None:
         """Return printed over derived [dB, deg] at a frequency [Hz], ``None`` if it has no value."""
@@ -167,7 +167,8 @@ def compare_anywhere(numbers: Numbers, tf: TransferFunction) -> Comparison:
     return comparison
 
 
-def _value(expression: Expression, known: Mapping[str, acb]) -> acb:
+def value_of(expression: Expression, known: Mapping[str, acb]) -> acb:
+    """Return the principal value of an expression on balls; not finite where it divides by zero."""
     return principal_values(expression, 1, lambda name: [known[name]])[0]
 
 

@@ -9,6 +9,8 @@ from math import isfinite
 
 from symflex.audit.judge import Audit
 from symflex.audit.numeric import Comparison, Deviation
+from symflex.audit.tables import TableAudit
+from symflex.errors.diagnostic import counted
 from symflex.expressions import Expression, format_expression, quotient
 from symflex.print.forms import print_form
 from symflex.print.text import INDENT, WIDTH, hanging, wrapped
@@ -20,6 +22,20 @@ VERDICTS = {
     "differs": "DIFFERS from the derived function: proved",
     "agrees": "agrees with the derived function to 50 digits at 40 points: NOT PROVED",
     "undecided": "NOT DECIDED: no value could be compared",
+}
+
+TABLE_VERDICTS = {
+    "right": "every entry is right to the last digit: proved",
+    "rounded": "right, but badly rounded: proved",
+    "wrong": "WRONG ENTRIES: proved",
+    "undecided": "NOT DECIDED",
+}
+ENTRY_VERDICTS = {
+    "rounded": "badly rounded",
+    "wrong": "WRONG",
+    "extra": "EXTRA: no root belongs to it",
+    "missing": "MISSING in print",
+    "undecided": "not decided",
 }
 
 
@@ -191,9 +207,70 @@ def _words(text: str, longest: int) -> list[str]:
 SCHEMA = "symflex.audit/1"
 
 
-def audit_document(audits: Sequence[Audit]) -> dict[str, object]:
+def audit_document(audits: Sequence[Audit], tables: Sequence[TableAudit] = ()) -> dict[str, object]:
     """Return the document ``symflex audit --json`` prints."""
-    return {"schema": SCHEMA, "audits": [audit_json(audit) for audit in audits]}
+    return {
+        "schema": SCHEMA,
+        "audits": [audit_json(audit) for audit in audits],
+        "tables": [table_json(table) for table in tables],
+    }
+
+
+def table_text(found: TableAudit, width: int = WIDTH) -> str:
+    """Return what was found about a table: its verdict, and every entry that is not right."""
+    table = found.table
+    lines = _filled(f"{table.name}   {TABLE_VERDICTS[found.verdict]}", width, "", INDENT)
+    if table.source:
+        lines += _filled(f"printed in: {table.source}", width, INDENT)
+    if found.prints is not None:
+        said = f"prints {found.reading} of the {table.of} of {'/'.join(table.tf)}"
+        said += "" if table.prints is not None else " (it does not say so; the most common reading that fits)"
+        lines += _filled(said, width, INDENT)
+        lines += _filled(f"right to the last digit: {found.right} of {found.count} (proved)", width, INDENT)
+    if found.reason:
+        lines += _filled(f"not proved: {found.reason}", width, INDENT)
+    rows = [("row", "column", "printed", "right", "")]
+    for e in found.entries:
+        said = ENTRY_VERDICTS.get(e.verdict, "")
+        said += f", {counted(e.digits, 'digit')} right" if e.verdict == "wrong" and e.digits else ""
+        if said and (found.prints is not None):
+            rows.append((str(e.row), str(e.column or "-"), e.printed or "-", e.right or "-", said))
+    if len(rows) > 1:
+        widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+        cells = (
+            "  ".join(c.rjust(w) for c, w in zip(r[:-1], widths, strict=False)) + f"  {r[-1]}" for r in rows
+        )
+        lines += ["", *(f"{INDENT}{line}".rstrip() for line in cells)]
+    if found.slip:
+        lines += ["", *_filled(f"conjecture: {found.slip}", width, INDENT)]
+    return "\n".join(lines)
+
+
+def table_json(found: TableAudit) -> dict[str, object]:
+    """Return one entry of ``tables``."""
+    return {
+        "name": found.table.name,
+        "tf": "/".join(found.table.tf),
+        "of_roots": found.table.of,
+        "source": found.table.source,
+        "prints": found.reading or None,
+        "verdict": found.verdict,
+        "right": found.right,
+        "of": found.count,
+        "reason": found.reason or None,
+        "entries": [
+            {
+                "row": e.row,
+                "column": e.column,
+                "printed": e.printed or None,
+                "right": e.right or None,
+                "right_digits": e.digits if e.verdict == "wrong" else None,
+                "verdict": e.verdict,
+            }
+            for e in found.entries
+        ],
+        "slip": found.slip or None,
+    }
 
 
 def audit_json(audit: Audit) -> dict[str, object]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import Field, dataclass, fields
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import click
@@ -22,6 +23,7 @@ from symflex.options import OUTSIDE, option
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
+    from symflex.errors import Source
     from symflex.model import Model
 
 T = TypeVar("T")
@@ -48,6 +50,18 @@ class Specification:
     path: str  # the file
     allow_outside: tuple[str, ...]  # folders that its ``model`` blocks may read besides its own
     settings: Mapping[str, str]  # other values of parameters
+
+    def source(self) -> Source:
+        """Return the text of the specification."""
+        from symflex.model.spec import read
+
+        return read(Path(self.path))
+
+    def load_changed(self, source: Source) -> Model:
+        """Return the model of another text in its place."""
+        from symflex.model import load_with
+
+        return load_with(source, self.settings, allow_outside=self.allow_outside)
 
     def load(self) -> Model:
         """Read the specification; how many warnings it has is the last that the command prints."""

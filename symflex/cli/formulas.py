@@ -392,22 +392,27 @@ def _chosen(given: ExportOptions) -> Exporter:
 
 @command_of("audit", AuditOptions)
 def audit(spec: Specification, given: AuditOptions) -> int:
-    """Compare the formulas printed in SPEC with the derived ones.
+    """Compare the formulas and tables printed in SPEC with the derived ones.
 
     Each formula of [published] is proved equal, or its differences are shown with the structural laws that it
-    violates. A difference is a result, so the exit code is 0; with --strict it is 4.
+    violates. Each entry of [tables] is right to the last digit, badly rounded or wrong, proved; one slip that
+    makes all entries right is named as a conjecture. A difference is a result, so the exit code is 0; with
+    --strict it is 4.
     """
     from symflex import audit as audit_layer
-    from symflex.audit.text import audit_document, audit_text
+    from symflex.audit.text import audit_document, audit_text, table_text
 
     model = spec.load()
     audits = audit_layer.audit(model, given.tfs)
-    if not model.published:
+    tables = () if given.tfs else audit_layer.audit_tables(model, spec.source(), spec.load_changed)
+    if not model.published and not model.tables:
         note('nothing is published in this specification: put a formula into [published."OUT/IN"]')
     if given.as_json:
-        emit_json(audit_document(audits))
-    elif audits:
+        emit_json(audit_document(audits, tables))
+    elif audits or tables:
         width = terminal_width()
-        say("\n\n".join(audit_text(audit, width) for audit in audits))
-    is_equal = bool(audits) and all(audit.verdict == "equal" for audit in audits)
-    return 4 if given.strict and not is_equal else 0
+        texts = (*(audit_text(each, width) for each in audits), *(table_text(each, width) for each in tables))
+        say("\n\n".join(texts))
+    is_equal = bool(audits or tables) and all(each.verdict == "equal" for each in audits)
+    is_right = all(each.is_right for each in tables)
+    return 4 if given.strict and not (is_equal and is_right) else 0

@@ -15,6 +15,8 @@ from symflex.model.model import (
     Output,
     PlacedBlock,
     PlacedElement,
+    PrintedRow,
+    PrintedTable,
     Published,
     Signal,
 )

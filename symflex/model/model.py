@@ -386,6 +386,37 @@ class Published:
 
 
 @dataclass(frozen=True, slots=True)
+class PrintedRow:
+    """A row of a printed table of roots."""
+
+    values: tuple[tuple[str, ExactValue], ...]  # of parameters, in place of the model's
+    entries: tuple[str, ...]  # digits as printed, ``-`` for a gap
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class PrintedTable:
+    """A table of poles or zeros that a paper printed."""
+
+    name: str
+    tf: tuple[str, str]
+    of: Literal["poles", "zeros"]
+    prints: Expression | None  # of :data:`ROOT_QUANTITIES` and parameters; ``None`` where it is not said
+    rows: tuple[PrintedRow, ...]
+    source: str = ""
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+ROOT_QUANTITIES = {
+    "omega": "the imaginary part of a root [rad/s]",
+    "sigma": "its real part [rad/s]",
+    "f": "the imaginary part over 2 pi [Hz]",
+    "zeta": "the damping ratio, minus the real part over the distance from 0",
+}
+"""What ``prints`` of a table may use of a root."""
+
+
+@dataclass(frozen=True, slots=True)
 class Model:
     """Everything a specification says, resolved.
 
@@ -415,6 +446,7 @@ class Model:
     drawing: DrawingHints = DrawingHints()
     published: tuple[Published, ...] = ()
     notation: tuple[tuple[str, str], ...] = ()  # symbols of a paper, as typed in LaTeX, and their names here
+    tables: tuple[PrintedTable, ...] = ()
     signal_units: tuple[tuple[Variable, Dimension], ...] = ()
     quotients: tuple[tuple[tuple[str, str], Dimension], ...] = ()
     operating_point: OperatingPoint | None = None

@@ -22,7 +22,7 @@ from symflex.library.elements import COMPONENT_DOMAIN, ELEMENTS, Element, Port
 from symflex.model.analysis import ANALYSIS_KEYS, DIGITS_LIMIT, FIGURE_KEYS, FIGURE_KINDS, MODES_LIMIT
 from symflex.model.declarations import ASSUMPTIONS
 from symflex.model.headings import FORMAT_VERSION, NEEDED
-from symflex.model.model import INPUT_KINDS, TRANSFORMER_SYMBOLS
+from symflex.model.model import INPUT_KINDS, ROOT_QUANTITIES, TRANSFORMER_SYMBOLS
 from symflex.model.reading import NAME
 from symflex.model.scope import RESERVED
 from symflex.papers.labels import LABEL_LIMIT
@@ -72,6 +72,11 @@ def json_schema() -> Schema:
             "type": "object",
             "description": "names of the symbols that a paper uses",
             "additionalProperties": TEXT,
+        },
+        "tables": {
+            "type": "object",
+            "description": "printed poles and zeros",
+            "additionalProperties": _printed_table(),
         },
         "analysis": _analysis(),
         "figures": _table(_figure(), "figures of reports"),
@@ -253,6 +258,22 @@ def _printed() -> Schema:
         "doc": TEXT,
     }
     return {**_closed(keys), "oneOf": [{"required": ["expr"]}, {"required": ["latex"]}]}
+
+
+def _printed_table() -> Schema:
+    values = {"type": "array", "items": VALUE, "minItems": 1, "description": "digits as printed, - for a gap"}
+    row = _closed({"set": {"type": "object", "additionalProperties": VALUE}, "values": values}, ["values"])
+    rows = {"type": "array", "items": {"anyOf": [row, values]}, "description": "rows of the table"}
+    keys = {
+        "of": {"enum": ["poles", "zeros"], "description": "what is printed"},
+        "tf": _said(TEXT, "whose they are, as OUT/IN"),
+        "prints": _said(VALUE, "what is printed of a root: " + ", ".join(ROOT_QUANTITIES)),
+        "rows": rows,
+        "values": _said(values, "the only row"),
+        "source": _said(TEXT, "where it is printed"),
+        "doc": TEXT,
+    }
+    return _closed(keys)
 
 
 def _count(most: int, description: str) -> Schema:

@@ -41,7 +41,8 @@ def unused_name(kind: str, name: str, span: Span | None) -> Diagnostic:
 def _uses(model: Model) -> dict[str, set[str]]:
     """Return, by name, the owners of the expressions it stands in."""
     used: dict[str, set[str]] = {}
-    printed = (e for p in model.published for e in (p.expression, p.scale, *(e for _, e in p.where)))
+    printed = [e for p in model.published for e in (p.expression, p.scale, *(e for _, e in p.where))]
+    printed += [table.prints for table in model.tables]
     point = model.operating_point
     at_rest = () if point is None else (*(e for _, e in point.values), *point.equations)
     others = (("", e) for e in (*printed, *at_rest) if e is not None)
