@@ -69,7 +69,6 @@ from symflex.model.network import (
     read_inputs,
 )
 from symflex.model.passes import Specified, rewritten
-from symflex.model.printed_tables import read_tables
 from symflex.model.reading import QuantityLiteral, Reader
 from symflex.model.scope import ModelScope, build_scope
 from symflex.model.settings import Setting, check_names, settled
@@ -215,8 +214,11 @@ def _with_requests(
         published=tuple(
             map(cycles.printed, read_published(requests, sections["published"], model, notation))
         ),
-        tables=read_tables(requests, sections["tables"], model, cycles),
     )
+    if sections["tables"]:
+        from symflex.model.printed_tables import read_tables  # few models have one
+
+        model = replace(model, tables=read_tables(requests, sections["tables"], model, cycles))
     model = _with_names_in_print(reader, requests, model, broken, cycles)
     # A transfer function is missing where its output or input could not be read: no second mistake.
     reader.take([p for p in requests.problems if are_read or p.code != "SF218"])
