@@ -12,7 +12,7 @@ all commands, would take 7 ms of every start.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from decimal import Decimal
 from fractions import Fraction
 from math import inf, isfinite, isinf, nan
@@ -568,6 +568,10 @@ class FitOptions:
         **SOME_TFS,
         help="Transfer function of --base; one for each response.  Without --base: responses to fit.",
     )
+    model: str | Path | None = option(
+        None, "--model", is_path=True, help="Specification whose parameters --free are fitted."
+    )
+    free: str = option("", "--free", metavar="NAMES", help="Parameters of --model to fit, such as k,b,J_2.")
     modes: int | None = option(
         None, "--modes", least=1, most=50, help="Number of resonances.  [default: chosen by --criterion]"
     )
@@ -634,6 +638,25 @@ class FitOptions:
     )
     strict: bool = option(False, "--strict", help="Exit with code 4 and write nothing if the fit is poor.")
     as_json: bool = option(False, "--json", **JSON)
+
+    @property
+    def fits_parameters(self) -> bool:
+        """Whether parameters of a specification are fitted; SF902 for options of resonances beside these."""
+        if self.model is None and not self.free:
+            return False
+        if self.model is None:
+            raise refused("--free is for the parameters of --model SPEC")
+        for one in fields(self):
+            if one.name in OF_RESONANCES and getattr(self, one.name) != one.default:
+                raise refused(f"{one.metadata['flags'][0]} is for fits of resonances, without --model")
+        return True
+
+
+OF_RESONANCES = frozenset(
+    "base modes start criterion is_gain_free is_lag_free is_lag_signed is_delay_free slope driving loop "
+    "order_figure".split()
+)
+"""Options of :class:`FitOptions` that only fits of resonances have."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -14,15 +14,19 @@ package, imported where it is used: most commands need few of them, and many of 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from symflex.errors import Source
-from symflex.model import Model, Setting, load_with
+from symflex.algebra import LAPLACE
+from symflex.errors import Source, refused
+from symflex.expressions import names as expression_names
+from symflex.model import Model, Setting, load_with, with_numbers
 from symflex.model.spec import read
 from symflex.print.warnings import warnings
 from symflex.transfer import AnyBoundFunction, bind, derive
+from symflex.transfer.bind import read_values
 from symflex.transfer.of_model import (
     assemble,
     assemble_for_checks,
@@ -38,7 +42,13 @@ from symflex.transfer.of_model import (
 )
 
 if TYPE_CHECKING:
+    from symflex.data.fitting.parameters import Derived, Machine, MachineFunction, ParameterFit
+    from symflex.data.measurement import MeasuredResponse
+    from symflex.model import ModelParameter
+    from symflex.options import FitOptions
     from symflex.roots import Budget, PoleZeroMap, Region
+
+FIT_SAMPLES = 40  # frequencies at which a program that is fitted with is compared with ball arithmetic
 
 
 def load(
@@ -73,3 +83,105 @@ def roots(bound: AnyBoundFunction, region: Region | None = None, digits: int = 1
     from symflex.roots.locate import locate  # imports numpy
 
     return locate(bound, region, digits)
+
+
+def fit_parameters(measured: Sequence[MeasuredResponse], given: FitOptions) -> ParameterFit:
+    """Fit parameters of a specification to measured responses, one for each of its functions.
+
+    Raises
+    ------
+    UsageError
+        SF902 for names that are no parameters of the functions, or functions that are not there.
+    ModelError
+        SF229 for parameters without a value.
+    """
+    from symflex.data.fitting import parameters  # imports scipy
+
+    model = load(str(given.model), given.allow_outside)
+    names = [name.strip() for name in given.free.split(",") if name.strip()]
+    defined = [d.name for d in model.definitions]
+    parameters.refuse_free(names, {p.name: p for p in model.settable}, defined)
+    pairs = _pairs_of(model, measured, given.tfs)
+    low, high = min(one.omega[0] for one in measured), max(one.omega[-1] for one in measured)
+    machine = _machine(str(given.model), model, pairs, names, (float(low), float(high)))
+    return parameters.fit_parameters(measured, machine)
+
+
+def _pairs_of(
+    model: Model, measured: Sequence[MeasuredResponse], tfs: Sequence[str]
+) -> tuple[tuple[str, str], ...]:
+    """Return the function of each response: those named, or what the responses are called."""
+    if tfs:
+        pairs = pick_pairs(model, tfs)
+        if len(pairs) == 1:
+            pairs = pairs * len(measured)
+    else:
+        known = {"/".join(pair): pair for pair in model.transfer_functions}
+        every = model.transfer_functions
+        pairs = tuple(
+            known.get(one.name) or every[0] for one in measured if len(every) == 1 or one.name in known
+        )
+    if len(pairs) != len(measured):
+        message = f"{len(measured)} responses and {len(pairs)} transfer functions for them"
+        names = ", ".join("/".join(pair) for pair in model.transfer_functions[:8])
+        raise refused(message, f"name one with --tf for each response: {names}")
+    return pairs
+
+
+def _machine(
+    path: str,
+    model: Model,
+    pairs: Sequence[tuple[str, str]],
+    names: Sequence[str],
+    omega: tuple[float, float],
+) -> Machine:
+    """Return functions with derivatives in some parameters, and what of these they tell apart."""
+    from symflex.codegen.program.evaluate import Gradient
+    from symflex.codegen.program.verify import choose_programs
+    from symflex.data.fitting.identifiable import Coefficients, identify
+    from symflex.data.fitting.parameters import Machine, MachineFunction
+
+    values = dict(read_values(model.parameters, {}))
+    free = tuple(p for name in names for p in model.parameters if p.name == name)
+    distinct = tuple(dict.fromkeys(pairs))
+    derived, _ = derive_as(with_numbers(model, names, values), distinct, solves=True)
+    functions: dict[tuple[str, str], MachineFunction] = {}
+    for pair, tf in zip(distinct, derived, strict=True):
+        (program, _), _ = choose_programs(tf, FIT_SAMPLES, has_real=False)
+        gradient = Gradient(program, tuple(names))
+        functions[pair] = MachineFunction(tf.name, tf.unit, gradient, Coefficients.of(tf, names))
+    used = {p.name for tf in derived for p in tf.parameters}
+    for name in names:
+        if name not in used:
+            raise refused(f"{derived[0].name} does not depend on '{name}'", "leave it out of --free")
+    known = [p.name for p in free if p.spread is not None]
+    coefficients = [functions[pair].coefficients for pair in distinct]
+    told = identify(derived, coefficients, names, values, omega, known)
+    numbers = {
+        name: float(value.nearly) * (1j if value.is_imaginary else 1) for name, value in values.items()
+    }
+    every = tuple(functions[pair] for pair in pairs)
+    return Machine(path, every, free, numbers, told, _derived_values(model, names))
+
+
+def _derived_values(model: Model, names: Sequence[str]) -> tuple[Derived, ...]:
+    """Return the definitions without s that depend on some parameters."""
+    from symflex.codegen.program.build import constant_of
+    from symflex.codegen.program.derivative import differentiated
+    from symflex.codegen.program.evaluate import values_of
+    from symflex.codegen.program.forge import Forge, straight
+    from symflex.data.fitting.parameters import Derived
+
+    free, varying, found = set(names), {LAPLACE}, []
+    for definition in model.definitions:
+        inside = {n.name for n in expression_names(definition.expression)}
+        if inside & varying:
+            varying.add(definition.name)
+            continue
+        if not inside & free:
+            continue
+        free.add(definition.name)
+        forge = Forge()
+        code = differentiated(straight(forge, [constant_of(forge, model, definition.expression)]), names)
+        found.append(Derived(definition.name, "", partial(values_of, code)))
+    return tuple(found)

@@ -1,6 +1,6 @@
 """The classes a user meets: thin faces over the pipeline, with SymPy and mpmath at the surface."""
 
-from symflex.api.fitted import Fit, fit
+from symflex.api.fitted import Fit, FittedParameters, fit
 from symflex.api.mode_shape import ModeShape
 from symflex.api.model import Model, Table, load, loads
 from symflex.api.report import WrittenReport, write_report

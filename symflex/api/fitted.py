@@ -1,17 +1,19 @@
-"""Resonances fitted to measured frequency responses."""
+"""Resonances, and parameters of a specification, fitted to measured frequency responses."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, overload
 
 import numpy as np
 
 from symflex.api.model import Model, loads
 from symflex.data.measurement import Estimate, MeasuredResponse, prepared, read_measurement
 from symflex.options import FitOptions
+from symflex.pipeline import fit_parameters
 from symflex.print.notebook import Printed
 
 if TYPE_CHECKING:
@@ -131,11 +133,117 @@ class Fit(Printed):
         return f"<Fit{kind}: {modes} Hz>"
 
 
+@dataclass(frozen=True, eq=False)
+class FittedParameters(Printed):
+    """Parameters of a specification that fit measured responses, with standard errors.
+
+    Parameters
+    ----------
+    found : symflex.data.fitting.ParameterFit
+        The fit in full: data, residuals, covariance, what the data can tell apart.
+    """
+
+    found: fitting.ParameterFit
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The fitted values by name, in SI units; without those that the data do not determine."""
+        return {name: self.found.values[name] for name in self._determined}
+
+    @property
+    def standard_errors(self) -> dict[str, float]:
+        """Standard errors by name."""
+        errors = dict(zip(self.found.machine.names, self.found.errors.tolist(), strict=True))
+        return {name: errors[name] for name in self._determined}
+
+    @property
+    def intervals(self) -> dict[str, tuple[float, float]]:
+        """Intervals by name that hold the true values in 95 % of cases."""
+        every = dict(zip(self.found.machine.names, self.found.intervals(), strict=True))
+        return {name: every[name] for name in self._determined}
+
+    @property
+    def _determined(self) -> tuple[str, ...]:
+        return self.found.machine.identifiability.alone
+
+    @property
+    def correlations(self) -> Real:
+        """Correlations of the errors of all free parameters, shape (p, p)."""
+        return self.found.correlations
+
+    @property
+    def definitions(self) -> dict[str, tuple[float, float]]:
+        """Definitions that depend on the free parameters: value and standard error by name."""
+        return {one.name: (value, error) for one, value, error in self.found.definitions()}
+
+    @property
+    def combinations(self) -> dict[str, tuple[float, float]]:
+        """What is determined of parameters that are not: value and standard error by expression."""
+        return {name: (value, error) for name, value, error in self.found.combinations()}
+
+    @property
+    def is_identifiable(self) -> bool:
+        """Whether the data can tell all free parameters apart."""
+        return self.found.machine.identifiability.is_complete
+
+    @property
+    def other_values(self) -> tuple[dict[str, float], ...]:
+        """Other values with the same response, or ones that describe the data as well."""
+        names = self.found.machine.names
+        return tuple(dict(zip(names, twin.tolist(), strict=True)) for twin in self.found.twins)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Cautions about the fit, as sentences."""
+        return self.found.warnings
+
+    @property
+    def poor(self) -> tuple[str, ...]:
+        """Why the specification does not describe the data; empty for a good fit."""
+        return self.found.poor
+
+    def specification(self, folder: str | Path = ".", date: str | None = None) -> str:
+        """Return the text of the specification with fitted values, errors and a date, by default today's."""
+        from symflex.data.fitting.specification import machine_specification  # imports scipy
+
+        return machine_specification(self.found, folder, date or datetime.now(UTC).date().isoformat())
+
+    def model(self) -> Model:
+        """Return the model with the fitted values."""
+        return loads(
+            self.specification(Path()), "<fit>", allow_outside=[Path(self.found.machine.path).parent]
+        )
+
+    def plot(self, response: int = 0, *, ax: AxesGiven | None = None) -> Figure:
+        """Return a figure of data, fit and residual of one response; ``ax`` as for :meth:`Fit.plot`."""
+        from symflex.figures import draw_fit  # imports matplotlib
+
+        return draw_fit(self.found.residual, response, ax)
+
+    def to_json_dict(self) -> dict[str, object]:
+        """Return the result in the schema ``symflex.fit_parameters/1``."""
+        from symflex.data.fitting.text import parameters_json
+
+        return parameters_json(self.found)
+
+    def passages(self) -> Iterator[Passage]:
+        """Return the report."""
+        from symflex.data.fitting.text import parameter_passages
+
+        return parameter_passages(self.found)
+
+    def __repr__(self) -> str:
+        values = ", ".join(f"{name} = {value:.4g}" for name, value in self.values.items())
+        return f"<FittedParameters: {values or 'none is determined'}>"
+
+
+@overload
 def fit(
     data: Data | Sequence[Data],
     base: str | Path | None = None,
     tf: str | Sequence[str] = (),
     *,
+    model: None = None,
     modes: int | None = None,
     start: Literal["auto", "peaks", "vector", "aaa"] = "auto",
     criterion: Literal["bic", "aicc"] = "bic",
@@ -151,8 +259,51 @@ def fit(
     allow_outside: Sequence[str | Path] = (),
     estimator: str = "h1",
     segments: int | None = None,
-) -> Fit:
-    """Fit resonances to measured frequency responses.
+) -> Fit: ...
+
+
+@overload
+def fit(
+    data: Data | Sequence[Data],
+    *,
+    model: str | Path,
+    free: str | Sequence[str],
+    tf: str | Sequence[str] = (),
+    band: tuple[float, float] | None = None,
+    columns: str = "",
+    axis: tuple[float, float] | None = None,
+    averages: float | None = None,
+    window: str | None = None,
+    allow_outside: Sequence[str | Path] = (),
+    estimator: str = "h1",
+    segments: int | None = None,
+) -> FittedParameters: ...
+
+
+def fit(
+    data: Data | Sequence[Data],
+    base: str | Path | None = None,
+    tf: str | Sequence[str] = (),
+    *,
+    model: str | Path | None = None,
+    free: str | Sequence[str] = (),
+    modes: int | None = None,
+    start: Literal["auto", "peaks", "vector", "aaa"] = "auto",
+    criterion: Literal["bic", "aicc"] = "bic",
+    band: tuple[float, float] | None = None,
+    columns: str = "",
+    axis: tuple[float, float] | None = None,
+    averages: float | None = None,
+    window: str | None = None,
+    gain: bool = False,
+    lag: bool | Literal["signed"] = False,
+    delay: bool = False,
+    slope: int | None = None,
+    allow_outside: Sequence[str | Path] = (),
+    estimator: str = "h1",
+    segments: int | None = None,
+) -> Fit | FittedParameters:
+    """Fit resonances, or parameters of a specification, to measured frequency responses.
 
     Parameters
     ----------
@@ -162,7 +313,12 @@ def fit(
         The specification whose transfer function the resonances are multiplied by; without it a gain and a
         power of s.
     tf : str or sequence of str
-        That function, "OUT/IN"; one, or one per response.
+        That function, or that of ``model``, "OUT/IN"; one, or one per response.
+    model : str or Path, optional
+        The specification whose parameters are fitted, in place of resonances; it goes with neither ``base``
+        nor the options of resonances.
+    free : str or sequence of str
+        The names of these parameters, such as ``"k, b"``.
     modes : int, optional
         How many resonances; by default what ``criterion`` prefers.
     start : str
@@ -232,6 +388,8 @@ def fit(
         else:
             responses += read_measurement(one, columns, estimate, axis)
     asked = FitOptions(
+        model=model,
+        free=free if isinstance(free, str) else ",".join(free),
         base=base,
         tfs=[tf] if isinstance(tf, str) else list(tf),
         modes=modes,
@@ -244,4 +402,7 @@ def fit(
         slope=slope,
         allow_outside=allow_outside,
     )
-    return Fit(fitted(prepared(responses, band, averages, window), asked))
+    every = prepared(responses, band, averages, window)
+    return (
+        FittedParameters(fit_parameters(every, asked)) if asked.fits_parameters else Fit(fitted(every, asked))
+    )

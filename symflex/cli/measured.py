@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -33,11 +34,15 @@ def fit(given: FitOptions) -> int:
     specification with resonance blocks, which derive, roots, plot and export can use; with --loop K it
     contains a loop, and 'symflex stability --gain K' finds its stable gains.
 
+    --model SPEC --free k,b,J_2 --tf OUT/IN fits parameters of a specification in place of resonances. If the
+    data cannot tell them apart, the report begins with what they determine, and with what you could fix.
+
     The report gives standard errors, and the frequencies where the measured phase deviates from that of a
     minimum-phase fit to the magnitude alone. A poor fit is one that does not describe the data within their
     noise or does not determine a resonance; the report begins by saying so.
 
-    Exit code 3: the data are invalid. Exit code 4: no fit was found, or with --strict a poor one.
+    Exit code 3: the data are invalid. Exit code 4: no fit was found, with --strict a poor one, or --free has
+    parameters that no data of this kind determine.
     """
     from symflex import pipeline
     from symflex.analysis.measured import fit as fitted
@@ -47,6 +52,8 @@ def fit(given: FitOptions) -> int:
     from symflex.data.measurement import prepared
     from symflex.print.text import passages_text
 
+    if given.fits_parameters:
+        return _fit_parameters(given)
     if given.base is not None and given.slope is not None:
         raise refused("--slope is for fits without --base")
     if given.loop and not given.output:
@@ -96,6 +103,43 @@ def fit(given: FitOptions) -> int:
     )
     _draw(together, given)
     return 0
+
+
+def _fit_parameters(given: FitOptions) -> int:
+    """Fit parameters of a specification, and write what is asked for."""
+    from symflex import pipeline
+    from symflex.data.fitting.specification import machine_specification
+    from symflex.data.fitting.text import parameter_passages, parameters_json
+    from symflex.data.measurement import prepared
+    from symflex.figures import draw_fit, save  # imports matplotlib
+    from symflex.print.text import passages_text
+
+    keep(given.model, given.output)
+    for place, endings in ((given.output, (".toml",)), (given.figure, SUFFIXES)):
+        if place:
+            check_place(place, endings)
+    every = prepared(_read(given), given.band, given.averages, given.window)
+    budget = entered_budget()
+    with ProgressBar() as bar, budget.reporting_to(bar).entered():
+        found = pipeline.fit_parameters(every, given)
+    if given.strict and found.poor:
+        hint = "leave out --strict to print it anyway"
+        raise FitError(Diagnostic("SF618", f"the fit is poor: {found.poor[0]}", None, hint))
+    is_complete = found.machine.identifiability.is_complete
+    if given.output and not is_complete:
+        note(f"{given.output} is not written: the data do not determine all parameters")
+    elif given.output:
+        today = datetime.now(UTC).date().isoformat()
+        write(given.output, machine_specification(found, Path(given.output).parent, today))
+    answer(
+        given.as_json,
+        lambda: parameters_json(found),
+        lambda: passages_text(parameter_passages(found), terminal_width()),
+    )
+    if given.figure:
+        save(draw_fit(found.residual), Path(given.figure))
+        note(f"wrote {given.figure}")
+    return 0 if is_complete else FitError.exit_code
 
 
 def _draw(resonances: ResonanceFit, given: FitOptions) -> None:

@@ -149,12 +149,12 @@ def _draw_response(fit: ResonanceFit, response: int, top: Axes, bottom: Axes, *,
             axes.axvspan(band.low_hz, band.high_hz, color="#F6E3D4", linewidth=0, zorder=0)
     fitted = _unwrapped(model)
     _draw_data(top, bottom, measured, model, fitted)
-    if not is_small:
+    count, order = int(fit.modes.sum()), fit.resonances.order
+    if order and not is_small:
         top.plot(frequency, _decibels(start), color=COLOURS[4], linestyle=DASHES[3], label="start")
         aside = np.degrees(np.angle(start / model))
         bottom.plot(frequency, fitted + aside, color=COLOURS[4], linestyle=DASHES[3])
-    count = int(fit.modes.sum())
-    words = "fit" if is_small else f"fit, {count} resonance{'' if count == 1 else 's'}"
+    words = "fit" if is_small or not order else f"fit, {count} resonance{'' if count == 1 else 's'}"
     top.plot(frequency, _decibels(model), color=COLOURS[0], label=words)
     bottom.plot(frequency, fitted, color=COLOURS[0])
     if test.bands and not test.is_minimum_phase:

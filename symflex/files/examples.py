@@ -21,6 +21,7 @@ FOLDERS: Final[dict[str, str]] = {
     "eppinger1988": "Models of a paper on robot flexibility, and its claims",
     "eppinger1988/loops": "Position and force loops around these models",
     "frames": "Plane frames, whose members bend and stretch",
+    "measured": "Machines whose parameters are fitted to measured responses",
     "tapers": "Sections, tensions and coefficients that vary along x",
 }  # what each folder holds; ``claims.toml`` is no model, see ``symflex.report.claims``
 CLAIMS: Final = "claims.toml"

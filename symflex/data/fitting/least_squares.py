@@ -24,7 +24,7 @@ step for 50,000 lines costs what forming their derivatives costs.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -247,15 +247,39 @@ def _judged(problem: FitProblem, modes: Resonances, *, has_converged: bool) -> R
     residuals = _residuals(problem, modes, kind)
     total = modes.size(problem.free)
     with np.errstate(all="ignore"):
-        sums = _Sums(total, problem.size, _cost(residuals))
-        shares = _correlation(residuals, sums.power)
-        for r, (line, slopes) in enumerate(zip(problem.lines, _slopes(problem, modes, kind), strict=True)):
-            inside = line.base * modes.factor(r, line.observation.omega)
-            turn = 1 if line.parts > 1 else np.exp(1j * np.angle(problem.values(modes, r)))[:, None]
-            score = score_covariance(line, inside, slopes * turn)
-            sums.add(modes.columns(r, problem.free), slopes, score, len(shares))
+        insides = [
+            line.base * modes.factor(r, line.observation.omega) for r, line in enumerate(problem.lines)
+        ]
+        columns = [modes.columns(r, problem.free) for r in range(len(problem.lines))]
+        slopes = _slopes(problem, modes, kind)
+        sums, shares = sums_of(problem.lines, insides, residuals, slopes, columns, total)
         covariance, correlation = _covariance(sums, shares)
     return Refined(modes, has_converged, tuple(residuals), covariance, correlation, total)
+
+
+def sums_of(
+    lines: Sequence[FittedLines],
+    insides: Sequence[Complex],
+    residuals: list[Values],
+    slopes: Iterable[Values],
+    columns: Sequence[Whole] | None = None,
+    total: int | None = None,
+) -> tuple[Sums, Shares]:
+    """Return what a covariance is made of; ``insides`` are responses at the frequencies of observations.
+
+    ``columns`` are the parameters that each response depends on, of a ``total``; by default all.
+    """
+    sums, shares = None, correlation_of(residuals, _cost(residuals))
+    for r, (line, by_own) in enumerate(zip(lines, slopes, strict=True)):
+        if sums is None:
+            count = by_own.shape[1] if total is None else total
+            sums = Sums(count, sum(_parts(one).size for one in residuals), _cost(residuals))
+        turn = 1 if line.parts > 1 else np.exp(1j * np.angle(line.observation(insides[r])))[:, None]
+        score = score_covariance(line, insides[r], by_own * turn)
+        own = np.arange(by_own.shape[1]) if columns is None else columns[r]
+        sums.add(own, by_own, score, len(shares))
+    assert sums is not None  # there is a response
+    return sums, shares
 
 
 def widened(problem: FitProblem, refined: Refined) -> Refined:
@@ -321,7 +345,10 @@ def _ends(line: FittedLines, modes: Resonances, values: Complex) -> Complex:
     return np.vstack((common, shape, shape * s / w)).T
 
 
-class _Sums:
+Shares = list[tuple[float, int]]  # correlation of residuals some lines apart, and counts of pairs
+
+
+class Sums:
     """Sums over lines that a covariance is made of; a response adds to those of its own parameters."""
 
     def __init__(self, size: int, values: int, power: float) -> None:
@@ -345,9 +372,9 @@ class _Sums:
             self.crossed[lag - 1][at] += cross + cross.T
 
 
-def _correlation(residuals: list[Values], power: float) -> list[tuple[float, int]]:
+def correlation_of(residuals: list[Values], power: float) -> Shares:
     """Return the correlation of residuals some lines apart, until it may be chance, and counts of pairs."""
-    shares: list[tuple[float, int]] = []
+    shares: Shares = []
     total = sum(r.size for r in residuals)
     for lag in range(1, LARGEST_LAG + 1 if power > 0 else 1):
         pairs = sum(max(r.size - lag, 0) for r in residuals)
@@ -359,7 +386,34 @@ def _correlation(residuals: list[Values], power: float) -> list[tuple[float, int
     return shares
 
 
-def _covariance(sums: _Sums, shares: list[tuple[float, int]]) -> tuple[Real | None, float]:
+def sandwich(sums: Sums, shares: Shares, prior: Real, rank: int) -> tuple[Real, Real]:
+    """Return the covariance of parameters that lines and a ``prior`` determine, in so many directions.
+
+    The second result has the other directions, one a row, in parameters over their scales; after them a row
+    of these scales.
+    """
+    size = np.sqrt(np.maximum(np.diag(sums.normal + prior), np.finfo(float).tiny))
+    scaled = np.outer(size, size)
+    values, vectors = np.linalg.eigh((sums.normal + prior) / scaled)
+    inverse = (vectors[:, -rank:] / np.maximum(values[-rank:], np.finfo(float).tiny)) @ vectors[:, -rank:].T
+    middle = _middle(sums, shares) * max(sums.power / max(sums.values - rank, 1), np.finfo(float).tiny)
+    covariance = inverse @ ((middle + prior) / scaled) @ inverse / scaled
+    return covariance, np.vstack((vectors[:, :-rank].T, 1 / size))
+
+
+def _middle(sums: Sums, shares: Shares) -> Real:
+    """Return the covariance of J'e for lines of unit variance."""
+    middle = sums.normal if sums.score is None else sums.score
+    for lag, (share, pairs) in enumerate(shares, 1):
+        kept = share
+        if sums.score is not None:
+            kept -= HANN_SHARES[lag - 1]
+            kept = kept if kept > 2 / np.sqrt(pairs) else 0.0
+        middle = middle + kept * sums.crossed[lag - 1]
+    return middle
+
+
+def _covariance(sums: Sums, shares: Shares) -> tuple[Real | None, float]:
     """Return the covariance of the parameters, ``None`` if it is no number, and the factor of correlation."""
     # Parameters that the lines do not determine have infinite variance. Windows and overlapping records
     # correlate lines: the correlation of residuals up to :data:`LARGEST_LAG` lines apart enters between two
@@ -378,15 +432,8 @@ def _covariance(sums: _Sums, shares: list[tuple[float, int]]) -> tuple[Real | No
     values, vectors = np.linalg.eigh(sums.normal / scaled)
     is_null = values < SINGULAR * values[-1]
     inverse = (vectors[:, ~is_null] / values[~is_null]) @ vectors[:, ~is_null].T
-    middle = (sums.normal if sums.score is None else sums.score) / scaled
-    factor = 1.0
-    for lag, (share, pairs) in enumerate(shares, 1):
-        factor += 2 * share
-        kept = share
-        if sums.score is not None:
-            kept -= HANN_SHARES[lag - 1]
-            kept = kept if kept > 2 / np.sqrt(pairs) else 0.0
-        middle = middle + kept * sums.crossed[lag - 1] / scaled
+    middle = _middle(sums, shares) / scaled
+    factor = 1 + 2 * sum(share for share, _ in shares)
     covariance = inverse @ middle @ inverse * (sums.power / freedom) / scaled
     covariance[np.diag_indices(count)] += np.finfo(float).eps ** 2  # doubles are no more exact
     lost = np.any(np.abs(vectors[:, is_null]) > NULL_PART, axis=1)

@@ -21,6 +21,7 @@ from pathlib import Path
 import numpy as np
 
 from symflex.data.fitting.fit import ResonanceFit
+from symflex.data.fitting.parameters import OF_SPREAD, ParameterFit
 from symflex.data.fitting.resonances import Resonances
 from symflex.errors import Diagnostic, FitError, Source, SymflexError, refused
 from symflex.model import load_with
@@ -64,6 +65,47 @@ def fit_specification(fit: ResonanceFit, folder: str | Path, loop: str | None = 
                 return text
     message = f"the fit cannot be written as a specification: {why.message}"
     raise FitError(Diagnostic("SF617", message, None, why.hint))
+
+
+def machine_specification(fit: ParameterFit, folder: str | Path, date: str) -> str:
+    """Return the specification of fitted parameters with their values and errors, for a folder.
+
+    A spread is the half of the interval that holds 95 % of a normal distribution, so that the next fit takes
+    this one for what it is.
+    """
+    machine, path = fit.machine, Path(fit.machine.path)
+    source = tomllib.loads(read(path).text, parse_float=Decimal)
+    names = ", ".join(dict.fromkeys(one.name for one in fit.residual.measured))
+    kind = "SYNTHETIC data, " if any(one.is_synthetic for one in fit.residual.measured) else ""
+    sections = _with_copy({}, source, path.parent, folder)
+    parameters = dict(source["parameters"])
+    for p, value, error in zip(machine.parameters, fit.theta.tolist(), fit.errors.tolist(), strict=True):
+        if not np.isfinite(error):
+            continue
+        given = parameters[p.name]
+        entry = dict(given) if isinstance(given, dict) else {}
+        unit = "" if "unit" in entry else p.written_unit
+        scale = float(p.scale.nearly) if p.written_unit else 1.0
+        written, off = value / scale, error / scale
+        entry["value"] = f"{written:.{DIGITS}g} {unit}" if unit else _exact(written)
+        before = str(entry.get("doc", "")).partition("; fitted to ")[0]
+        accuracy = _said_error(off, p.written_unit)
+        entry["doc"] = f"{before}; fitted to {kind}{names}, {accuracy}, {date}".removeprefix("; ")
+        half = OF_SPREAD * off
+        if 0 < half < abs(written) or p.assume == "real":
+            entry["spread"] = f"{half:.2g} {p.written_unit or p.unit}".rstrip()
+        else:
+            entry.pop("spread", None)
+        parameters[p.name] = entry
+    every = {name: sections.get(name, value) for name, value in source.items()}
+    text = write(every | {"parameters": parameters})
+    try:
+        load_with(Source(str(Path(folder) / "fitted.toml"), text), {}, allow_outside=(path.parent,))
+    except SymflexError as error:
+        why = error.diagnostics[0]
+        message = f"the fit cannot be written as a specification: {why.message}"
+        raise FitError(Diagnostic("SF617", message, None, why.hint)) from None
+    return text
 
 
 def _written(

@@ -4,16 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import asdict
-from math import floor, isfinite, log10, pi, sqrt
+from fractions import Fraction
+from math import comb, floor, isfinite, log10, pi, sqrt
 from typing import Final
 
 import numpy as np
 
-from symflex.data.fitting import FittedModeShapes, PhaseTest, ResonanceFit
+from symflex.data.fitting import FittedModeShapes, ParameterFit, PhaseTest, ResonanceFit
+from symflex.data.fitting.identifiable import Identifiability
+from symflex.errors import counted
+from symflex.model import ModelParameter
 from symflex.print.text import INDENT, Passage
 
 SCHEMA: Final = "symflex.fit/1"
+PARAMETERS_SCHEMA: Final = "symflex.fit_parameters/1"
 ERROR_DIGITS: Final = 2
+MOST_DIGITS: Final = 12  # digits of a parameter that are printed at most
+MOST_FIXES: Final = 8  # sets of parameters to fix that are listed
 STARTS: Final = {
     "peaks": "peaks and troughs of the magnitude, the paper's procedure",
     "vector": "vector fitting",
@@ -55,6 +62,177 @@ def fit_passages(fit: ResonanceFit, shapes: FittedModeShapes | None) -> Iterator
     words = enumerate(_phase_words(test, fit, r) for r, test in enumerate(fit.phase_tests))
     tests = [f"phase test{fit.of_response(r)}: {said}" for r, said in words]
     yield Passage([INDENT + line for line in [*tests, *(f"warning: {said}" for said in fit.warnings)]])
+
+
+def parameter_passages(fit: ParameterFit) -> Iterator[Passage]:
+    """Return the report of a fit of parameters."""
+    machine, shown = fit.machine, fit.residual
+    lines = [f"POOR FIT: {reason}" for reason in fit.poor]
+    many = counted(len(machine.names), "parameter")
+    for r, measured in enumerate(shown.measured):
+        lines.append(f"{measured.name}   {many} of {machine.functions[r].name} in {machine.path}")
+        if measured.is_synthetic:
+            lines.append(f"{INDENT}the data are SYNTHETIC: computed from a model, not measured")
+        lines.append(INDENT + _data_line(shown, r))
+    yield Passage(lines)
+    yield from _identifiability(fit)
+    rows = [("", "value", "std. error", "95 % interval", "", "")]
+    table = zip(machine.parameters, fit.theta, fit.errors, fit.intervals(), strict=True)
+    for p, value, error, ends in table:
+        scale, unit = _written_scale(p)
+        prior = f"spread {_spread_text(p)}" if p.spread is not None else ""
+        if not isfinite(error):
+            rows.append((p.name, "undetermined", "", "", unit, prior))
+            continue
+        numbers = (_figures(value / scale, error / scale), f"{error / scale:#.2g}")
+        interval = " to ".join(_figures(end / scale, error / scale) for end in ends)
+        rows.append((p.name, *numbers, interval, unit, prior))
+    yield Passage([f"{INDENT}parameters"], rows)
+    derived = [
+        (one.name, _figures(value, error), f"{error:#.2g}" if isfinite(error) else "undetermined", one.unit)
+        for one, value, error in fit.definitions()
+    ]
+    if derived:
+        yield Passage([f"{INDENT}definitions"], [("", "value", "std. error", ""), *derived])
+    misfits = [(shown.misfit_db(r), shown.misfit_degrees(r)) for r in range(len(shown.measured))]
+    residuals = [
+        f"{INDENT}residual{shown.of_response(r)}: {level:.2g} dB"
+        f"{'' if shown.measured[r].is_magnitude else f' and {turn:.2g} degrees'} rms"
+        for r, (level, turn) in enumerate(misfits)
+    ]
+    same, tried = fit.starts
+    begun = f"{same} of {counted(tried, 'start')} led to these values"
+    yield Passage([*residuals, INDENT + _accuracy(shown), INDENT + begun])
+    said = [f"{INDENT}warning: {one}" for one in fit.warnings]
+    if said:
+        yield Passage(said)
+
+
+def _identifiability(fit: ParameterFit) -> Iterator[Passage]:
+    """Return which parameters cannot be distinguished, and other values with the same response."""
+    machine, known = fit.machine, fit.machine.identifiability
+    if not known.is_complete:
+        determined = list(known.alone)
+        determined += [known.text(powers) for powers in known.combinations]
+        determined += [one.text for one in known.expressions]
+        what = "response" if len(machine.functions) == 1 else "responses"
+        count = f"{counted(known.rank, 'number')} of {counted(len(known.names), 'parameter')}"
+        lines = [f"{INDENT}NOT IDENTIFIABLE: the {what} can tell only {count}: {', '.join(determined)}"]
+        if known.fixes:
+            lines.append(f"{INDENT}fix, or give a spread to, {_fixes(known)}")
+        rows = [("", "value", "std. error")]
+        rows += [(name, _figures(value, error), f"{error:#.2g}") for name, value, error in fit.combinations()]
+        yield Passage(lines, rows if len(rows) > 1 else ())
+    names = machine.names
+    for twin in fit.twins:
+        changed = [
+            f"{name} = {value / _written_scale(p)[0]:.5g} {_written_scale(p)[1]}".rstrip()
+            for name, p, value, own in zip(names, machine.parameters, twin, fit.theta, strict=True)
+            if abs(value - own) > 1e-6 * abs(own)
+        ]
+        how = "have the same response" if fit.are_exact_twins else "fit as well"
+        yield Passage([f"{INDENT}OTHER VALUES {how}: {', '.join(changed)}"])
+
+
+def _fixes(known: Identifiability) -> str:
+    """Return which parameters one could fix."""
+    count = len(known.names) - known.rank
+    if len(known.fixes) == comb(len(known.mixed), count):
+        if count == len(known.mixed):
+            return " and ".join(known.mixed)
+        return f"{'one' if count == 1 else f'any {count}'} of {', '.join(known.mixed)}"
+    sets = [" and ".join(names) for names in known.fixes]
+    more = f"; or {len(sets) - MOST_FIXES} other sets" if len(sets) > MOST_FIXES else ""
+    return f"{'; or '.join(sets[:MOST_FIXES])}{more}"
+
+
+def _written_scale(parameter: ModelParameter) -> tuple[float, str]:
+    """Return what one of the unit in which a parameter was written is in the unit of its value."""
+    if parameter.written_unit:
+        return float(parameter.scale.nearly), parameter.written_unit
+    return 1.0, parameter.unit
+
+
+def _spread_text(parameter: ModelParameter) -> str:
+    spread = parameter.spread
+    if isinstance(spread, Fraction):
+        return f"{100 * float(spread):.3g} %"
+    assert spread is not None  # asked for where there is one
+    scale, unit = _written_scale(parameter)
+    return f"{float(spread.nearly) / scale:.3g} {unit}".rstrip()
+
+
+def _figures(value: float, error: float) -> str:
+    """Return a number with as many digits as its error has two of.
+
+    >>> _figures(0.00012345678, 2.1e-7), _figures(70123.4, 150.0), _figures(3.0, float("inf"))
+    ('0.00012346', '7.012e+04', '3')
+    """
+    if not (isfinite(value) and isfinite(error)) or error <= 0 or value == 0:
+        return f"{value:.6g}"
+    digits = floor(log10(abs(value))) - floor(log10(error)) + ERROR_DIGITS
+    return f"{value:#.{min(max(digits, ERROR_DIGITS), MOST_DIGITS)}g}".rstrip(".")
+
+
+def parameters_json(fit: ParameterFit) -> dict[str, object]:
+    """Return the document ``symflex fit --model --json`` prints."""
+    machine, known, shown = fit.machine, fit.machine.identifiability, fit.residual
+    table = zip(machine.parameters, fit.theta.tolist(), fit.errors.tolist(), fit.intervals(), strict=True)
+    return {
+        "schema": PARAMETERS_SCHEMA,
+        "model": machine.path,
+        "poor": bool(fit.poor),
+        "poor_because": list(fit.poor),
+        "parameters": [
+            {
+                "name": p.name,
+                "value": value if isfinite(error) else None,
+                "standard_error": _finite(error),
+                "interval": [_finite(ends[0]), _finite(ends[1])] if isfinite(error) else None,
+                "unit": p.unit,
+                "declared": machine.values[p.name],
+                "identifiable": p.name in known.alone,
+            }
+            for p, value, error, ends in table
+        ],
+        "correlations": fit.correlations.tolist() if known.is_complete else None,
+        "definitions": [
+            {"name": one.name, "value": _finite(value), "standard_error": _finite(error), "unit": one.unit}
+            for one, value, error in fit.definitions()
+        ],
+        "identifiable": {
+            "complete": known.is_complete,
+            "rank": known.rank,
+            "exact": known.is_exact,
+            "combinations": [
+                {"expression": name, "value": value, "standard_error": error}
+                for name, value, error in fit.combinations()
+            ],
+            "fix": [list(names) for names in known.fixes],
+        },
+        "other_values": [dict(zip(machine.names, twin.tolist(), strict=True)) for twin in fit.twins],
+        "other_values_exact": fit.are_exact_twins,
+        "responses": [
+            {
+                "name": measured.name,
+                "tf": machine.functions[r].name,
+                "synthetic": measured.is_synthetic,
+                "lines": measured.values.size,
+                "left_out_hz": measured.frequency_hz[shown.left_out(r)].tolist(),
+                "band_hz": [float(measured.frequency_hz[0]), float(measured.frequency_hz[-1])],
+                "unit": measured.unit,
+                "residual_db": shown.misfit_db(r),
+                "residual_degrees": None if measured.is_magnitude else shown.misfit_degrees(r),
+            }
+            for r, measured in enumerate(shown.measured)
+        ],
+        "residual": {
+            "reduced": shown.refined.reduced,
+            "in_units_of_coherence_noise": _is_scaled(shown),
+            "line_correlation": shown.refined.correlation,
+        },
+        "warnings": list(fit.warnings),
+    }
 
 
 def _zeros(fit: ResonanceFit, r: int) -> Passage:
