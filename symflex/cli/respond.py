@@ -16,11 +16,11 @@ from symflex.model import read_settings
 from symflex.options import POINTS, PeakOptions, RespondOptions, ShapeOptions, axis_ends, duration
 
 if TYPE_CHECKING:
-    import numpy.typing as npt
-
     from symflex.analysis.time_response import EnclosedResponse
     from symflex.data.measurement.input_signal import InputSignal
+    from symflex.data.measurement.record import TimeRecord
     from symflex.roots import PoleZeroMap
+    from symflex.transfer import AnyBoundFunction
 
 TABLE = ".csv"
 
@@ -38,8 +38,9 @@ def respond(spec: Specification, given: RespondOptions) -> int:
     --shaped passes the input through the shaper that 'symflex shape' prints for the same transfer function.
 
     --record FILE drives the model with the input of a time record, which is read as by 'symflex fit'. The rms
-    of the difference between measured output and model is printed, and -o draws both. Values are in the units
-    of the model.
+    of the difference between measured output and model is printed, and -o draws both, too. An offset of the
+    output is fitted, and subtracted. Values are in SI, as those of the model; units that the record does not
+    give, or others than the model's, are reported.
 
     An impulse in the response is printed separately, not among the values. The value at t = 0 is the limit
     from the right (t -> 0+).
@@ -60,14 +61,13 @@ def show_response(spec: Specification, given: RespondOptions) -> int:
     from symflex.analysis.time_response import (
         SampleTimes,
         default_until,
-        evenly,
         find_step_info,
         forced_response,
         free_motion,
         response_from,
         response_text,
     )
-    from symflex.data.measurement.input_signal import ENDINGS
+    from symflex.data.measurement.input_signal import ENDINGS, read_signal
     from symflex.roots.locate import as_quotient
 
     path = Path(given.record or given.to)
@@ -77,7 +77,10 @@ def show_response(spec: Specification, given: RespondOptions) -> int:
     until = None if given.until is None else duration(given.until, "--until")
     model = spec.load()
     pair = first_pair(model, given.tf, "showing")
-    signal, measured = _samples(path, given, pair[0]) if is_file else (None, None)
+    record = _record(path, given) if given.record else None
+    signal = read_signal(path) if is_file and not record else None
+    for guess in signal.guesses if signal else ():
+        note(f"{path}: {guess}")
     (bound,) = pipeline.derive_for_roots(model, [pair], is_explained=True)
     free = free_motion(model, pair, initial) if initial else None
     shaper = None
@@ -86,7 +89,14 @@ def show_response(spec: Specification, given: RespondOptions) -> int:
 
         shaper = input_shaper(bound, given.modes, given.shaped, given.digits, joint=given.joint)
     roots = None
-    if signal is None:
+    if record is not None:
+        response = _compared(record, bound, given, until)
+    elif signal is not None:
+        wanted = _times(signal, given, until)
+        samples = signal.times, signal.values, wanted, given.digits, shaper
+        response = forced_response(as_quotient(bound), *samples, is_held=given.hold, free=free)
+        response = replace(response, input=path.name)
+    else:
         # With waves, poles are found only where they are needed for the last time anyway.
         roots = roots_if_found(bound) if until is None or bound.is_rational else None
         last = until or Fraction(
@@ -94,23 +104,11 @@ def show_response(spec: Specification, given: RespondOptions) -> int:
         )
         times = SampleTimes.evenly(last, given.points or POINTS)
         response = response_from(free, bound, given.to, times, given.digits, shaper)
-    else:
-        wanted = tuple(dict.fromkeys(signal.times))
-        if until is not None or given.points is not None:
-            wanted = evenly(until or signal.times[-1], given.points or POINTS)
-        quotient = as_quotient(bound)
-        forced = forced_response(
-            quotient, signal.times, signal.values, wanted, given.digits, shaper, is_held=given.hold, free=free
-        )
-        response = replace(forced, input=path.name)
-        if measured is not None:
-            kept = np.interp(forced.times, np.array(signal.times, np.float64), measured[1])
-            response = replace(response, measured=(measured[0], kept))
     response = replace(response, initial=", ".join(f"{name} = {x}" for name, x in initial.items()))
     if given.output:
         _write(response, given, Path(given.output))
-    else:
-        is_step = given.to == "step" and not (signal or shaper or free) and response.certified
+    if not given.output or given.record:
+        is_step = given.to == "step" and not (is_file or shaper or free) and response.certified
         # Where a pole that is known keeps the response from rest, the others are not needed.
         rests = is_step and not any(
             p.on_imaginary_axis or p.re > 0 for p in (roots.all_poles if roots else ()) if not p.is_zero
@@ -128,23 +126,52 @@ def show_response(spec: Specification, given: RespondOptions) -> int:
     return 0
 
 
-def _samples(
-    path: Path, given: RespondOptions, output: str
-) -> tuple[InputSignal, tuple[str, npt.NDArray[np.float64]] | None]:
-    """Return the input that a file gives, and of a record the output that was measured; print guesses."""
+def _record(path: Path, given: RespondOptions) -> TimeRecord:
     from symflex.data.measurement import record_in_time
-    from symflex.data.measurement.input_signal import read_signal
 
-    measured: tuple[str, npt.NDArray[np.float64]] | None = None
-    if given.record is None:
-        signal = read_signal(path)
-    elif (record := record_in_time(path, given.columns)) is None:
+    if (record := record_in_time(path, given.columns)) is None:
         raise refused(f"'{path}' is not a time record", "a column called time, or --columns t,u,y")
-    else:
-        signal, measured = record.driven(output)
-    for guess in signal.guesses:
-        note(f"{path}: {guess}")
-    return signal, measured
+    return record
+
+
+def _times(signal: InputSignal, given: RespondOptions, until: Fraction | None) -> tuple[Fraction, ...]:
+    from symflex.analysis.time_response import evenly
+
+    if until is None and given.points is None:
+        return tuple(dict.fromkeys(signal.times))
+    return tuple(evenly(until or signal.times[-1], given.points or POINTS))
+
+
+def _compared(
+    record: TimeRecord, bound: AnyBoundFunction, given: RespondOptions, until: Fraction | None
+) -> EnclosedResponse:
+    """Return the response to the input of a record, and the output that was measured; print guesses."""
+    from symflex.analysis.time_response import forced_response
+    from symflex.quantities import unit_of
+    from symflex.roots.locate import as_quotient
+
+    signal, (name, measured) = record.driven(bound.source.output.name)
+    source = record.input[0] if record.input else ""
+    said = list(signal.guesses)
+    for channel, end in ((source, bound.source.input), (name, bound.source.output)):
+        unit, wanted = record.units.get(channel), end.unit or str(end.dimension)
+        if end.dimension and unit is None:
+            said.append(f"'{channel}' has no unit in the record, and is taken in {wanted}, as {end.name}")
+        elif end.dimension and unit and unit_of(unit).dimension != end.dimension:
+            said.append(f"'{channel}' is in {unit}, and {end.name} in {wanted}: values are not converted")
+    samples = signal.times, signal.values, _times(signal, given, until), given.digits
+    responses = {}
+    for is_held in (True,) if given.hold or record.is_held else (False, True):
+        made = forced_response(as_quotient(bound), *samples, is_held=is_held)
+        kept = np.interp(made.times, np.array(signal.times, np.float64), measured)
+        responses[is_held] = replace(made, input=Path(given.record or "").name).compared(name, kept)
+    is_held = min(responses, key=lambda held: responses[held].rms_difference)
+    if not given.hold:
+        way = "held from each sample to the next" if is_held else "straight between its samples"
+        said.append(f"the input is taken as {way}" + ", which is closer" * (len(responses) > 1))
+    for guess in said:
+        note(f"{given.record}: {guess}")
+    return responses[is_held]
 
 
 def _growth(known: PoleZeroMap | None) -> list[str]:

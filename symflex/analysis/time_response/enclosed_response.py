@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from operator import sub
 
@@ -72,6 +72,8 @@ class EnclosedResponse:
         If it is not certified: the methods that would prove it, and why each refused.
     measured : (str, array of float) or None
         Name and values, at the same times, of an output that was measured with this input.
+    offset : float
+        What was subtracted from them: the mean of their difference from the response.
     """
 
     tf: str
@@ -90,6 +92,7 @@ class EnclosedResponse:
     initial: str = ""
     refused: tuple[str, ...] = ()
     measured: tuple[str, npt.NDArray[np.float64]] | None = None
+    offset: float = 0.0
 
     def __post_init__(self) -> None:
         huge = next(
@@ -125,14 +128,27 @@ class EnclosedResponse:
         """The values, in ``unit``; UsageError SF812 where one is too large for a double."""
         return self._doubles[0]
 
+    def compared(self, name: str, measured: npt.NDArray[np.float64]) -> EnclosedResponse:
+        """Return the response with a measured output, less the offset that brings it closest."""
+        offset = float(np.mean(measured - self.values))
+        return replace(self, measured=(name, measured - offset), offset=offset)
+
+    @property
+    def rms_difference(self) -> float:
+        """The rms of the measured output less the values, zero if nothing was measured."""
+        off = self.measured[1] - self.values if self.measured else 0.0
+        return float(np.sqrt(np.mean(np.square(off))))
+
     @property
     def comparison(self) -> str:
         """The rms difference between measured output and values, in words; empty if nothing was measured."""
         if self.measured is None:
             return ""
         name, record = self.measured
-        off, size = (float(np.sqrt(np.mean(np.square(x)))) for x in (record - self.values, record))
-        return f"measured {name} less the model: rms {off:.4g}, where {name} has {size:.4g}"
+        off, size = self.rms_difference, float(np.sqrt(np.mean(np.square(record))))
+        unit = f" {self.unit}" if self.unit else ""
+        words = f"measured {name} less the model: rms {off:.4g}{unit}, where {name} has {size:.4g}"
+        return f"{words}; an offset of {self.offset:.4g} is subtracted"
 
     @property
     def radius(self) -> npt.NDArray[np.float64]:
@@ -168,9 +184,8 @@ class EnclosedResponse:
         document |= {"shaper": self.shaper} if self.shaper else {}
         document |= {"initial": self.initial} if self.initial else {}
         if self.measured is not None:
-            off = float(np.sqrt(np.mean(np.square(self.measured[1] - self.values))))
             record = {"output": self.measured[0], "value": self.measured[1].tolist()}
-            document["measured"] = {**record, "rms_difference": off}
+            document["measured"] = {**record, "rms_difference": self.rms_difference, "offset": self.offset}
         return document if self.reason is None else {**document, "reason": self.reason}
 
     def to_csv(self) -> str:
@@ -182,7 +197,13 @@ class EnclosedResponse:
             heads.append(f"# not certified: {self.reason}")
         shown = [self.in_decimals(y) for y in self.enclosures]
         rows = [f"{t!r},{d.re},{d.radius}" for t, d in zip(self.times.tolist(), shown, strict=True)]
-        return "\n".join([*heads, "time_s,value,radius", *rows]) + "\n"
+        names = "time_s,value,radius"
+        if self.measured is not None:
+            heads.append(f"# measured: {self.measured[0]}, less an offset of {self.offset:.9g}")
+            names += ",measured"
+            pairs = zip(rows, self.measured[1].tolist(), strict=True)
+            rows = [f"{row},{value:.9g}" for row, value in pairs]
+        return "\n".join([*heads, names, *rows]) + "\n"
 
 
 def response_text(response: EnclosedResponse, notes: Sequence[str] = ()) -> str:

@@ -126,8 +126,17 @@ class TimeRecord:
             self.units.get(output, ""), self.units.get(source, "")
         )
 
+    @property
+    def is_held(self) -> bool:
+        """Whether the input keeps its samples until the next, as one that jumps or waits does."""
+        changes = np.flatnonzero(np.diff(self.input[1])) if self.input else np.empty(0, int)
+        if not self.input or not changes.size:
+            return False
+        is_switched = np.unique(self.input[1]).size < LEVELS
+        return bool(is_switched or 2 * changes.size < changes[-1] - changes[0])
+
     def driven(self, output: str) -> tuple[InputSignal, tuple[str, Real]]:
-        """Return the input and an output, by name or the first, both from where they begin; SF902 without."""
+        """Return the input from where it begins, and an output, by name or the first; SF902 without."""
         if self.input is None:
             message = f"'{self.name}' has no input that could drive a model"
             raise refused(message, "--columns t,u,y names the columns")
@@ -136,7 +145,7 @@ class TimeRecord:
         name, y = next((one for one in self.outputs if one[0] == output), self.outputs[0])
         step = Fraction(f"{self.step_s:.9g}")
         times, values = [i * step for i in range(u.size)], [Fraction(f"{x:.12g}") for x in u.tolist()]
-        return InputSignal(tuple(times), tuple(values), self.guesses), (name, y - np.median(y[:BEGIN]))
+        return InputSignal(tuple(times), tuple(values), self.guesses), (name, y)
 
 
 def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecord | None:

@@ -398,15 +398,38 @@ def test_a_record_drives_the_model_and_its_output_is_compared(oscillator, tmp_pa
     (tmp_path / "axis.csv").write_text("time,force,X\n" + "\n".join(rows) + "\n", encoding="utf-8")
     asked = ("respond", "osc.toml", "--tf", "X/F", "--record", "axis.csv", "--hold")
     rms = oscillator(*asked, "--json").json["measured"]["rms_difference"]
-    assert rms == pytest.approx(np.sqrt(np.mean((measured / 11) ** 2)), rel=1e-3)
-    assert f"measured X less the model: rms {rms:.4g}" in oscillator(*asked).out
-    assert oscillator(*asked, "-o", "axis.svg").code == 0
+    assert rms == pytest.approx(np.std(measured / 11), rel=1e-3)  # less the mean, an offset
+    offset = 0.7 + np.mean(measured) / 11
+    said = f"measured X less the model: rms {rms:.4g} m, where X has"
+    for more in ((), ("-o", "axis.svg"), ("-o", "axis.csv.csv")):  # -o leaves the table
+        out = oscillator(*asked, *more).out
+        assert said in out and f"an offset of {offset:.4g} is subtracted" in out
+    table = np.loadtxt(tmp_path / "axis.csv.csv", delimiter=",", skiprows=5)
+    assert table[:, 3] == pytest.approx(measured - np.mean(measured) / 11, abs=1e-8)
     drawn = ("osc.toml", "step", "--tf", "X/F", "--record", "axis.csv", "-o", "step.svg")
     assert oscillator("plot", *drawn).code == 0
     assert "measured" in (tmp_path / "step.svg").read_text(encoding="utf-8")
     assert oscillator("plot", "osc.toml", "bode", *drawn[2:]).code == 2
     assert oscillator(*asked, "--to", "ramp").code == 2
     assert oscillator("respond", "osc.toml", "--tf", "X/F", "--record", "osc.toml").code == 2
+
+
+def test_a_record_is_in_the_units_of_its_header_and_held_where_that_is_closer(oscillator, tmp_path):
+    t = 0.01 * np.arange(100)
+    u = np.random.default_rng(1).normal(size=100)
+    y = [sum((b - a) * step_of_oscillator(x - at) for at, a, b in zip(t, [0, *u], u, strict=False) if x > at)
+         for x in t]  # fmt: skip
+    rows = "\n".join(f"{x:.2f},{1e-3 * f:.12g},{1e3 * z:.12g}" for x, f, z in zip(t, u, y, strict=True))
+    asked = ("respond", "osc.toml", "--tf", "X/F", "--record", "axis.csv")
+    (tmp_path / "axis.csv").write_text(f"time [s],F [kN],X [mm]\n{rows}\n", encoding="utf-8")
+    found = oscillator(*asked)
+    assert "'X' is in mm, and is read in m: times 0.001" in found.err
+    assert "held from each sample to the next, which is closer" in found.err
+    assert float(found.out.partition("rms ")[2].split()[0]) < 1e-6 * np.std(y)
+    (tmp_path / "axis.csv").write_text(f"time [s],F [V],X\n{rows}\n", encoding="utf-8")
+    found = oscillator(*asked)
+    assert "'F' is in V, and F in N: values are not converted" in found.err
+    assert "'X' has no unit in the record, and is taken in m" in found.err
 
 
 def test_what_is_not_certified_has_an_estimated_error_and_no_radius():
