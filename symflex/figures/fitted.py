@@ -43,6 +43,11 @@ FIT_INCHES, SMALL_INCHES, ORDER_INCHES = 4.9, 2.9, 2.9
 FIT_COLUMNS: Final = 2
 FEW_RESPONSES: Final = 4  # responses up to which two stand side by side; more stand three to a row
 SMALL_POINTS, NAME_POINTS = 6.5, 5.5
+NAME_LEVELS: Final = 3  # names of modes above each other on either side of their lines
+AXES_INCHES: Final = 2.6, 1.6  # about the size of a panel of magnitudes
+FINE: Final = 600  # points of a curve over a band, besides those around poles and zeros
+AROUND: Final = np.sinh(np.linspace(-4, 4, 41))  # distances of these from a pole or zero, in half widths
+PREFIXES: Final = ((1e9, "GHz"), (1e6, "MHz"), (1e3, "kHz"), (1.0, "Hz"), (1e-3, "mHz"))
 DATA_COLOUR: Final = "#555555"
 
 
@@ -79,7 +84,9 @@ def draw_fit(fit: ResonanceFit, response: int | None = None, ax: AxesGiven | Non
         top, bottom = Canvas(axes=given_axes).own_axes(2)
         _draw_response(fit, response or 0, top, bottom, is_small=False)
         measured = fit.measured[response or 0]
-        return _finish(top, bottom, measured, fit.bases[response or 0].unit, FIT_COLUMNS, is_new=False)
+        figure = _finish(top, bottom, measured, fit.bases[response or 0].unit, FIT_COLUMNS, is_new=False)
+        _name_modes(fit, top, is_small=False)
+        return figure
     shown = range(len(fit.measured)) if response is None else (response,)
     with paper_style():
         return _page(fit, shown)
@@ -120,6 +127,7 @@ def _page(fit: ResonanceFit, shown: Sequence[int]) -> Figure:
         for axes in panels[:-1]:
             axes.set_xlabel("")
             axes.tick_params(labelbottom=False)
+        _name_modes(fit, top, is_small=is_small)
         if is_small:
             top.set_title(_title(measured), fontsize=SMALL_POINTS, parse_math=False)
         else:
@@ -142,28 +150,31 @@ def _draw_response(fit: ResonanceFit, response: int, top: Axes, bottom: Axes, *,
     line, test = fit.problem.lines[response].every, fit.phase_tests[response]
     measured = line.measured
     frequency = measured.frequency_hz
-    model = fit.values(response)
-    start = fit.values(response, fit.candidate.start)
+    fine = _fine(fit, response)
+    model, start = fit.curve(response, fine), fit.curve(response, fine, fit.candidate.start)
     for axes in (top, bottom):
         for band in () if test.is_minimum_phase else test.bands:
             axes.axvspan(band.low_hz, band.high_hz, color="#F6E3D4", linewidth=0, zorder=0)
     fitted = _unwrapped(model)
-    _draw_data(top, bottom, measured, model, fitted)
+    at_lines = np.searchsorted(fine, frequency)
+    _draw_data(top, bottom, measured, model[at_lines], fitted[at_lines])
     count, order = int(fit.modes.sum()), fit.resonances.order
     if order and not is_small:
-        top.plot(frequency, _decibels(start), color=COLOURS[4], linestyle=DASHES[3], label="start")
+        top.plot(fine, _decibels(start), color=COLOURS[4], linestyle=DASHES[3], label="start")
         aside = np.degrees(np.angle(start / model))
-        bottom.plot(frequency, fitted + aside, color=COLOURS[4], linestyle=DASHES[3])
+        bottom.plot(fine, fitted + aside, color=COLOURS[4], linestyle=DASHES[3])
     words = "fit" if is_small or not order else f"fit, {count} resonance{'' if count == 1 else 's'}"
-    top.plot(frequency, _decibels(model), color=COLOURS[0], label=words)
-    bottom.plot(frequency, fitted, color=COLOURS[0])
+    top.plot(fine, _decibels(model), color=COLOURS[0], label=words)
+    bottom.plot(fine, fitted, color=COLOURS[0])
     if test.bands and not test.is_minimum_phase:
-        alone = model * test.resonances.factor(0, line.omega_seen)
+        alone = fit.values(response) * test.resonances.factor(0, line.omega_seen)
         alone = alone / fit.resonances.factor(response, line.omega_seen)
         phase = np.degrees(np.unwrap(np.angle(alone)))
         phase = phase + 360 * np.round((fitted[0] - phase[0]) / 360)
         bottom.plot(frequency, phase, color=COLOURS[1], linestyle=DASHES[1])
         top.plot([], [], color=COLOURS[1], linestyle=DASHES[1], label="phase from magnitude")
+    if not is_small and fit.problem.lines[response].deviation is not None:
+        top.plot([], [], color=COLOURS[2], linewidth=0.8, label="expected noise")
     excluded = fit.left_out(response)
     if excluded.size:
         level = _decibels(measured.values[excluded])
@@ -171,15 +182,60 @@ def _draw_response(fit: ResonanceFit, response: int, top: Axes, bottom: Axes, *,
     levels = _decibels(measured.values)
     rise = max(0.05 * float(np.ptp(levels)), 1.0)
     limits = float(levels.min()) - rise, float(levels.max()) + rise
-    for k, omega in enumerate(fit.resonances.omega_p[fit.modes].tolist(), 1):
-        hertz = omega / (2 * np.pi)
+    for hertz in (fit.resonances.omega_p[fit.modes] / (2 * np.pi)).tolist():
         for axes in (top, bottom):
             axes.axvline(hertz, color=QUIET, linewidth=0.4, zorder=0)
-        name = f"{k}" if is_small else f"{k}: {hertz:.4g} Hz"
-        turn = 0 if is_small else 90
-        anchor, within = (hertz, 0.02), ("data", "axes fraction")
-        top.annotate(name, anchor, xycoords=within, fontsize=NAME_POINTS, rotation=turn, ha="right")
     top.set_ylim(limits)
+
+
+def _fine(fit: ResonanceFit, response: int) -> Real:
+    """Return frequencies [Hz] of a smooth curve: the lines, and others near poles and zeros."""
+    lines, modes = fit.measured[response].frequency_hz, fit.resonances
+    omega = np.concatenate([modes.omega_p, np.abs(modes.omega_z[response])])
+    zeta = np.concatenate([modes.zeta_p, modes.zeta_z[response]])
+    known = np.isfinite(omega) & np.isfinite(zeta) & (np.abs(zeta) < 1)
+    around = (omega[known] / (2 * np.pi))[:, None] * (1 + np.abs(zeta[known])[:, None] * AROUND)
+    fine = np.concatenate([lines, np.geomspace(lines[0], lines[-1], FINE), around.ravel()])
+    return np.unique(fine[(fine >= lines[0]) & (fine <= lines[-1])])
+
+
+def _name_modes(fit: ResonanceFit, axes: Axes, *, is_small: bool) -> None:
+    """Name the modes beside their lines, where no other name is; those without room have none."""
+    hertz = (fit.resonances.omega_p[fit.modes] / (2 * np.pi)).tolist()
+    span = hertz[-1] - hertz[0] if len(hertz) > 1 else np.ptp(axes.get_xlim())
+    gaps = np.diff(hertz).min(initial=span) or span
+    names = [f"{k}" if is_small else f"{k}: {_in_hertz(x, float(gaps))}" for k, x in enumerate(hertz, 1)]
+    low, high = np.log(axes.get_xlim())
+    points = 72 * AXES_INCHES[0] / (2 if is_small else 1) / (high - low)
+    thick = NAME_POINTS * 1.15
+    taken: list[tuple[float, float, int]] = []
+    for name, at in zip(names, hertz, strict=True):
+        if not low <= np.log(at) <= high:
+            continue
+        x = points * (np.log(at) - low)
+        sides = ((x - thick, x, "right"), (x, x + thick, "left"))
+        free = (
+            (level, *side)
+            for level in range(NAME_LEVELS)
+            for side in sides
+            if not any(a < side[1] and side[0] < b and level == n for a, b, n in taken)
+        )
+        if (place := next(free, None)) is None:
+            continue
+        level, left, right, side = place
+        taken.append((left, right, level))
+        height = (7 / 100 if is_small else 1 / NAME_LEVELS) * level + 0.02
+        axes.annotate(
+            name, (at, height), xycoords=("data", "axes fraction"), fontsize=NAME_POINTS,
+            rotation=0 if is_small else 90, ha=side, va="bottom",
+        )  # fmt: skip
+
+
+def _in_hertz(hertz: float, gap: float) -> str:
+    """Return a frequency with the digits that tell it from one at a distance, four at least."""
+    size, unit = next((one for one in PREFIXES if hertz >= one[0]), PREFIXES[-1])
+    digits = max(4, int(np.ceil(np.log10(hertz / gap))) + 2) if gap > 0 else 4
+    return f"{hertz / size:.{min(digits, 9)}g} {unit}"
 
 
 def _draw_residual(fit: ResonanceFit, response: int, axes: Axes) -> None:

@@ -32,7 +32,17 @@ from symflex.data.fitting.order import (
     with_own_noise,
 )
 from symflex.data.fitting.problem import FitProblem, fit_problem
-from symflex.data.fitting.resonances import LOGARITHMIC, UNITS, Complex, Free, Mask, Resonances, Values, Whole
+from symflex.data.fitting.resonances import (
+    LOGARITHMIC,
+    UNITS,
+    Complex,
+    Free,
+    Mask,
+    Real,
+    Resonances,
+    Values,
+    Whole,
+)
 from symflex.data.fitting.starts import with_delays
 from symflex.data.measurement import MeasuredResponse
 from symflex.data.measurement.measured_response import ratio_of_units
@@ -141,6 +151,14 @@ class ResonanceFit:
         """Return the fitted (or another) model on the lines of one response, without the window's effect."""
         line = self.problem.lines[response].every
         return line.base_at_lines * (resonances or self.resonances).factor(response, line.omega_seen)
+
+    def curve(self, response: int, frequency_hz: Real, resonances: Resonances | None = None) -> Complex:
+        """Return the fitted (or another) model between the lines, as :meth:`values` on them."""
+        omega: Values = 2 * np.pi * frequency_hz
+        if rate := self.measured[response].decay_rate:  # as MeasuredResponse.omega_seen
+            omega = np.asarray(omega - 1j * rate, np.complex128)
+        factor = (resonances or self.resonances).factor(response, omega)  # with the power of s without a base
+        return factor * self.bases[response].function(omega) if self.problem.has_base else factor
 
     def real_poles(self) -> list[tuple[float, float]]:
         """Return the corner frequency of each real pole and its standard error [rad/s], ascending."""

@@ -23,6 +23,7 @@ import numpy as np
 from symflex.data.fitting.fit import ResonanceFit
 from symflex.data.fitting.parameters import OF_SPREAD, ParameterFit
 from symflex.data.fitting.resonances import Resonances
+from symflex.data.fitting.text import ends_of_band
 from symflex.errors import Diagnostic, FitError, Source, SymflexError, refused
 from symflex.model import load_with
 from symflex.model.scope import RESERVED
@@ -167,16 +168,16 @@ def _written(
     files = ", ".join(dict.fromkeys(m.name for m in fit.measured))
     kind = "SYNTHETIC data" if any(m.is_synthetic for m in fit.measured) else "measured data"
     low, high = (value / (2 * np.pi) for value in fit.problem.band)
-    count = int(fit.modes.sum())
+    ends, count = ends_of_band(low, high), int(fit.modes.sum())
     return write(
         {
             "symflex": 1,
             "title": f"{count or 'no'} simple {'resonance' if count == 1 else 'resonances'} fitted to {kind}",
-            "source": f"symflex fit of {files}, {low:.4g} to {high:.4g} Hz; form of the resonances: "
+            "source": f"symflex fit of {files}, {ends[0]} to {ends[1]} Hz; form of the resonances: "
             "Eppinger & Seering 1988, section 'Polynomial Resonance Model'",
             **({"doc": f"on a copy of {Path(fit.bases[0].path).name}, {fit.bases[0].tf}"} if copied else {}),
             **sections,
-            "analysis": {"band": [f"{low:.6g} Hz", f"{high:.6g} Hz"], "data_end": f"{high:.6g} Hz"},
+            "analysis": {"band": [f"{_plain(x)} Hz" for x in (low, high)], "data_end": f"{_plain(high)} Hz"},
         }
     )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import asdict
 from fractions import Fraction
-from math import comb, floor, isfinite, log10, pi, sqrt
+from math import ceil, comb, floor, isfinite, log10, pi, sqrt
 from typing import Final
 
 import numpy as np
@@ -240,14 +240,14 @@ def _zeros(fit: ResonanceFit, r: int) -> Passage:
     modes, errors, free = fit.resonances, fit.standard_errors(), fit.problem.free
     lines = [f"{INDENT}zeros{fit.of_response(r)}"]
     if free.gain:
-        unit = fit.gain_unit(r)
-        lines.append(
-            f"{INDENT}gain {modes.gain[r]:.6g} {unit}".rstrip() + f", standard error {errors.gain[r]:.2g}"
-        )
+        gain = f"{INDENT}gain {significant(modes.gain[r], errors.gain[r])} {fit.gain_unit(r)}".rstrip()
+        lines.append(f"{gain}, standard error {errors.gain[r]:.2g}")
     if free.lag:
-        lines.append(f"{INDENT}lag of the sensor {modes.lag[r]:.4g} s, standard error {errors.lag[r]:.2g} s")
+        lag = significant(modes.lag[r], errors.lag[r])
+        lines.append(f"{INDENT}lag of the sensor {lag} s, standard error {errors.lag[r]:.2g} s")
     if free.delay:
-        lines.append(f"{INDENT}delay {modes.delay[r]:.4g} s, standard error {errors.delay[r]:.2g} s")
+        delay = significant(modes.delay[r], errors.delay[r])
+        lines.append(f"{INDENT}delay {delay} s, standard error {errors.delay[r]:.2g} s")
     if modes.is_improper[r] and not fit.problem.has_base:
         end = fit.problem.band[1] / (2 * pi)
         lines.append(f"{INDENT}more zeros than poles, as the data ask for: it grows beyond {end:.4g} Hz")
@@ -436,8 +436,8 @@ def _what(fit: ResonanceFit, r: int) -> str:
 
 def _data_line(fit: ResonanceFit, r: int) -> str:
     measured = fit.measured[r]
-    low, high = measured.frequency_hz[0], measured.frequency_hz[-1]
-    parts = [f"data: {measured.values.size} lines from {low:.4g} to {high:.4g} Hz"]
+    low, high = ends_of_band(measured.frequency_hz[0], measured.frequency_hz[-1])
+    parts = [f"data: {measured.values.size} lines from {low} to {high} Hz"]
     if measured.coherence is None:
         parts.append("no coherence: the noise is estimated")
     else:
@@ -452,7 +452,8 @@ def _data_line(fit: ResonanceFit, r: int) -> str:
     return ", ".join(parts)
 
 
-LARGE: Final = 1e7  # what is larger is printed with a power of ten
+LARGEST: Final = 1e13  # what is larger, or smaller than SMALLEST, is printed with a power of ten
+SMALLEST: Final = 1e-7
 HEAD: Final = ("", "frequency [Hz]", "std. error", "damping ratio", "std. error", "")
 
 
@@ -469,13 +470,41 @@ def _places(error: float) -> int:
 
 
 def _shown(value: float, error: float) -> str:
-    if not isfinite(value) or abs(value) >= LARGE or 0 < abs(value) < 1 / LARGE:
-        return f"{value:.4g}"
-    return f"{value:.{_places(error)}f}"
+    """Return a value with two digits of its error."""
+    size = abs(value)
+    if size and (not isfinite(value) or size >= LARGEST or size < SMALLEST):
+        return significant(value, error)
+    places = _places(error)
+    return f"{value:.{places}f}" if isfinite(error) or size < LARGEST / 1e6 else f"{value:.0f}"
+
+
+def significant(value: float, error: float) -> str:
+    """Return a value with as many digits as its error allows, from 2 to 12; 6 if there is none.
+
+    >>> significant(1.99099e11, 1.1e8), significant(0.25, 0.3), significant(10293933.7, 0.4)
+    ('1.9910e+11', '0.25', '10293933.70')
+    """
+    digits = 6
+    if isfinite(error) and error > 0 and value and isfinite(value):
+        digits = floor(log10(abs(value))) - floor(log10(error)) + ERROR_DIGITS
+        digits = max(ERROR_DIGITS, min(12, digits))
+    text = f"{value:#.{digits}g}"
+    return text.rstrip(".")
+
+
+def ends_of_band(low: float, high: float) -> tuple[str, str]:
+    """Return the ends of a band [Hz] in four digits, or as many as tell its width.
+
+    >>> ends_of_band(1.0, 50.0), ends_of_band(10270325.0, 10299976.0)
+    (('1', '50'), ('10270320', '10299980'))
+    """
+    digits = 4 + max(0, ceil(-log10((high - low) / high))) if high > low else 4
+    rounded = [float(f"{x:.{digits}g}") for x in (low, high)]
+    return f"{rounded[0]:.10g}", f"{rounded[1]:.10g}"
 
 
 def _error(error: float) -> str:
-    if not isfinite(error) or error >= LARGE:
+    if not isfinite(error) or error >= LARGEST:
         return "undetermined" if not isfinite(error) else f"{error:.2g}"
     return f"{error:.{_places(error)}f}" if error >= 1e-10 else "0"  # noqa: PLR2004
 
@@ -491,7 +520,7 @@ def _accuracy(fit: ResonanceFit) -> str:
 
 
 def _phase_words(test: PhaseTest, fit: ResonanceFit, r: int) -> str:
-    low, high = fit.measured[r].frequency_hz[[0, -1]]
+    low, high = ends_of_band(*fit.measured[r].frequency_hz[[0, -1]])
     base = " (the base with its own phase)" if fit.bases[r].path else ""
     if test.verdict == "assumed":
         return "magnitude only: minimum phase is assumed"
@@ -500,7 +529,7 @@ def _phase_words(test: PhaseTest, fit: ResonanceFit, r: int) -> str:
     if not test.bands:
         return (
             f"minimum phase: the measured phase is that of a minimum-phase fit to the magnitude alone{base}, "
-            f"within 10 degrees or the noise, from {low:.4g} to {high:.4g} Hz"
+            f"within 10 degrees or the noise, from {low} to {high} Hz"
         )
     worst = max(test.bands, key=lambda band: abs(band.worst_degrees))
     others = len(test.bands) - 1

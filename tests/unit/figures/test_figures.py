@@ -470,6 +470,38 @@ def test_roots_outside_in_one_direction_share_an_arrow():
     assert [[mark.s for mark in group] for group in groups] == [[-5000, -9000], [5000]]
 
 
+def two_close_modes():
+    """Return a response with modes at 77.75 and 78.94 Hz on lines 1 Hz apart, and its fit."""
+    frequency = np.linspace(20.0, 140.0, 121)
+    s = 2j * np.pi * frequency
+    poles = [(2 * np.pi * f, zeta) for f, zeta in ((30.0, 0.01), (77.75, 0.004), (78.94, 0.004))]
+    values = sum(w**2 / (s**2 + 2 * zeta * w * s + w**2) for w, zeta in poles)
+    random = np.random.default_rng(1)
+    noise = 1 + 0.003 * (random.standard_normal(121) + 1j * random.standard_normal(121))
+    data = MeasuredResponse("a/u", frequency, values * noise / s)
+    return fit_resonances([data], None, FitOptions(modes=3, slope=-1))
+
+
+def test_names_of_close_modes_do_not_overprint_and_curves_are_smooth():
+    fit = two_close_modes()
+    frequency = fit.measured[0].frequency_hz
+    assert fit.curve(0, frequency) == pytest.approx(fit.values(0))
+    page = draw_fit(fit)
+    page.canvas.draw()
+    top, *_ = page.subfigs[0].axes
+    boxes = [text.get_window_extent() for text in top.texts]
+    assert [text.get_text().split(": ")[1] for text in top.texts] == ["30 Hz", "77.75 Hz", "78.94 Hz"]
+    assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
+    curve = next(line for line in top.lines if line.get_label().startswith("fit"))
+    x, y = curve.get_data()
+    peak = np.max(y[(x > 77) & (x < 78.3)])  # half way between two lines
+    assert peak == pytest.approx(
+        np.max(20 * np.log10(abs(fit.curve(0, np.linspace(77, 78.3, 4000))))), abs=0.02
+    )
+    shown = {text.get_text() for text in top.get_legend().get_texts()}
+    assert shown == {"measured", "start", "fit, 3 resonances", "expected noise"}
+
+
 def test_the_legend_of_a_page_names_what_any_of_its_responses_shows():
     random = np.random.default_rng(1)
     frequency = np.linspace(5.0, 60.0, 120)

@@ -6,8 +6,13 @@ import numpy as np
 import pytest
 
 import symflex
+from symflex.data.fitting import fit_resonances
+from symflex.data.fitting.specification import fit_specification
+from symflex.data.fitting.text import fit_passages
 from symflex.data.measurement import MeasuredResponse
 from symflex.errors import FitError
+from symflex.options import FitOptions
+from symflex.print.text import passages_text
 
 FREQUENCY = np.arange(2.0, 60.0, 0.25)
 S = 2j * np.pi * FREQUENCY
@@ -144,3 +149,19 @@ def test_what_cannot_be_written_is_an_error_and_no_text(folder):
     with pytest.raises(FitError) as caught:
         fit.specification(folder / "below")
     assert caught.value.diagnostics[0].code == "SF617"
+
+
+def test_a_report_has_the_digits_that_errors_allow_and_the_unit_of_the_gain(tmp_path):
+    frequency = np.linspace(10270325.0, 10299976.0, 150)
+    s, w = 2j * np.pi * frequency, 2 * np.pi * 10293933.7
+    random = np.random.default_rng(1)
+    noise = 1 + 0.005 * (random.standard_normal(150) + 1j * random.standard_normal(150))
+    values = 1e5 * noise * w**2 / (s**2 + 2 * 2e-5 * w * s + w**2)
+    made = fit_resonances([MeasuredResponse("Z", frequency, values, unit="Ohm")], None, FitOptions(slope=0))
+    text = passages_text(fit_passages(made, None), 80)
+    (row,) = (line.split() for line in text.splitlines() if line.startswith("    1 "))
+    assert len(row[1].partition(".")[2]) >= 1  # a tenth of a Hz or less, as its error
+    assert abs(float(row[1]) - 10293933.7) < 4 * float(row[2])
+    assert "from 10270320 to 10299980 Hz" in text
+    assert any(line.startswith("  gain ") and " Ohm, standard error" in line for line in text.splitlines())
+    assert 'band = ["10270325 Hz"' in fit_specification(made, tmp_path)
