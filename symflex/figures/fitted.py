@@ -45,8 +45,11 @@ FEW_RESPONSES: Final = 4  # responses up to which two stand side by side; more s
 SMALL_POINTS, NAME_POINTS = 6.5, 5.5
 NAME_LEVELS: Final = 3  # names of modes above each other on either side of their lines
 AXES_INCHES: Final = 2.6, 1.6  # about the size of a panel of magnitudes
-FINE: Final = 600  # points of a curve over a band, besides those around poles and zeros
-AROUND: Final = np.sinh(np.linspace(-4, 4, 41))  # distances of these from a pole or zero, in half widths
+FINE: Final = 300  # points of a curve over a band, besides those where it is not straight between two
+HALVED, BENT = (
+    5,
+    0.01,
+)  # how often intervals are halved in whose middle a curve is off by more than this share
 PREFIXES: Final = ((1e9, "GHz"), (1e6, "MHz"), (1e3, "kHz"), (1.0, "Hz"), (1e-3, "mHz"))
 DATA_COLOUR: Final = "#555555"
 
@@ -189,14 +192,18 @@ def _draw_response(fit: ResonanceFit, response: int, top: Axes, bottom: Axes, *,
 
 
 def _fine(fit: ResonanceFit, response: int) -> Real:
-    """Return frequencies [Hz] of a smooth curve: the lines, and others near poles and zeros."""
-    lines, modes = fit.measured[response].frequency_hz, fit.resonances
-    omega = np.concatenate([modes.omega_p, np.abs(modes.omega_z[response])])
-    zeta = np.concatenate([modes.zeta_p, modes.zeta_z[response]])
-    known = np.isfinite(omega) & np.isfinite(zeta) & (np.abs(zeta) < 1)
-    around = (omega[known] / (2 * np.pi))[:, None] * (1 + np.abs(zeta[known])[:, None] * AROUND)
-    fine = np.concatenate([lines, np.geomspace(lines[0], lines[-1], FINE), around.ravel()])
-    return np.unique(fine[(fine >= lines[0]) & (fine <= lines[-1])])
+    """Return frequencies [Hz] of a smooth curve: the lines, and others where it bends between two."""
+    lines = fit.measured[response].frequency_hz
+    fine = np.unique(np.concatenate([lines, np.geomspace(lines[0], lines[-1], FINE)[1:-1]]))
+    low, high = fine[:-1], fine[1:]
+    for _ in range(HALVED):
+        middle = (low + high) / 2
+        below, value, above = (fit.curve(response, f) for f in (low, middle, high))
+        bent = np.abs(value - (below + above) / 2) > BENT * np.abs(value)
+        low, middle, high = low[bent], middle[bent], high[bent]
+        fine = np.concatenate([fine, middle])
+        low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
+    return np.sort(fine)
 
 
 def _name_modes(fit: ResonanceFit, axes: Axes, *, is_small: bool) -> None:

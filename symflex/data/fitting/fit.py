@@ -158,7 +158,7 @@ class ResonanceFit:
         if rate := self.measured[response].decay_rate:  # as MeasuredResponse.omega_seen
             omega = np.asarray(omega - 1j * rate, np.complex128)
         factor = (resonances or self.resonances).factor(response, omega)  # with the power of s without a base
-        return factor * self.bases[response].function(omega) if self.problem.has_base else factor
+        return factor * self.bases[response].function(omega) if self.bases[response].path else factor
 
     def real_poles(self) -> list[tuple[float, float]]:
         """Return the corner frequency of each real pole and its standard error [rad/s], ascending."""
@@ -459,12 +459,28 @@ def _said_of_lines(fit: ResonanceFit) -> list[str]:
     return warnings
 
 
+def _said_of_units(fit: ResonanceFit) -> list[str]:
+    """Return where data and base are not known to have one unit."""
+    said = []
+    for measured, base in zip(fit.measured, fit.bases, strict=True):
+        if not base.path or not base.unit:
+            continue
+        if not measured.unit:
+            said.append(
+                f"the data of {measured.name} have no unit, and are taken in that of the base, {base.unit}"
+            )
+        elif ratio_of_units(measured.unit, base.unit) not in ("1", "rad", "1/rad"):
+            words = f"the data of {measured.name} are in {measured.unit}, and the base in {base.unit}"
+            said.append(f"{words}: the gain of the fit has the quotient")
+    return list(dict.fromkeys(said))
+
+
 def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
     modes = fit.resonances
     errors = fit.standard_errors()
     low, high = fit.problem.band
     is_exact = fit.leaves_rounding
-    warnings = _said_of_lines(fit)
+    warnings = [*_said_of_lines(fit), *_said_of_units(fit)]
     if fit.candidate.is_rivalled and high <= NARROW_BAND * low:
         width = f"{200 * (high - low) / (high + low):.2g} % wide"
         other = "another one fits as well, with another gain and other zeros"

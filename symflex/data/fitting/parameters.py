@@ -395,7 +395,7 @@ def fit_parameters(measured: Sequence[MeasuredResponse], machine: Machine) -> Pa
     x, *others = sorted(points, key=lambda point: float(np.linalg.norm(point)))  # nearest to what is declared
     theta, twins = machine.theta(x), tuple(map(machine.theta, others[:NAMED_TWINS]))
     covariance, directions = _covariance(problem, machine, x, refined)
-    shown = _shown(problem, machine, refined)
+    shown = _shown(problem, machine, refined, theta)
     freedom = problem.size - rank
     found = ParameterFit(machine, shown, theta, covariance, directions, freedom, twins, are_exact, starts)
     poor = _poor(found, likelihood)
@@ -633,13 +633,16 @@ def _covariance(problem: FitProblem, machine: Machine, x: Real, refined: Refined
     return covariance * np.outer(scales, scales), directions
 
 
-def _shown(problem: FitProblem, machine: Machine, refined: Refined) -> ResonanceFit:
+def _shown(problem: FitProblem, machine: Machine, refined: Refined, theta: Real) -> ResonanceFit:
     """Return the fit as one of no resonances on known bases: for its residual, its report and its figure."""
     none = _no_resonances(problem)
-    bases = tuple(
-        Base(lambda omega: np.asarray(omega, np.complex128), function.name, machine.path, function.unit)
-        for function in machine.functions
-    )
+
+    def base(response: int, function: MachineFunction) -> Base:
+        return Base(
+            lambda omega: machine.at(response, omega, theta)[0], function.name, machine.path, function.unit
+        )
+
+    bases = tuple(base(r, function) for r, function in enumerate(machine.functions))
     candidate = Candidate(0, "none", none, refined, None)
     tests = tuple(not_judged(problem, r, none) for r in range(len(problem.lines)))
     return ResonanceFit(problem, bases, candidate, (), "bic", tests, ())

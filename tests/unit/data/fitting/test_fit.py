@@ -322,3 +322,16 @@ def test_too_few_lines_are_an_error():
 def test_an_unknown_start_is_a_usage_error():
     with pytest.raises(UsageError, match="vector"):
         fit_resonances([exact(ONE)], UNIT, FitOptions(start="vectro"))
+
+
+def test_data_without_the_unit_of_their_base_or_in_another_one_are_warned_of():
+    base, exact_ones = Base(np.ones_like, "X/F", "base.toml", "m/N"), exact(ONE)
+    for unit, said in (
+        ("", "have no unit, and are taken in"),
+        ("m/(N*s)", "are in m/(N*s), and the base in"),
+    ):
+        fit = fit_resonances([replace(exact_ones, unit=unit)], [base], FitOptions(modes=1, is_gain_free=True))
+        assert any(said in warning for warning in fit.warnings), unit
+    fit = fit_resonances([replace(exact_ones, unit="m/N")], [base], FitOptions(modes=1, is_gain_free=True))
+    assert not any("unit" in warning or "the base in" in warning for warning in fit.warnings)
+    assert fit.gain_unit(0) == "1"

@@ -71,6 +71,7 @@ def test_all_parameters_of_a_drive_come_back_within_their_errors(fitted):
     assert np.max(np.abs(off)) < 3
     assert np.max(found.errors / found.theta) < 0.05
     assert not found.poor
+    assert found.residual.curve(0, LINES) == pytest.approx(found.residual.values(0))  # as it is drawn
     ((definition, value, error),) = found.definitions()
     assert definition.name == "omega_z"
     assert abs(value - np.sqrt(400 / 5e-3)) < 3 * error < 0.01 * value
