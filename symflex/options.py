@@ -526,11 +526,38 @@ class DrawOptions:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class RefereeOptions:
+    """Options of ``symflex referee``."""
+
+    paper: str = option("", nargs=1, required=True, is_path=True, metavar="PAPER.tex")
+    models: Places = option(
+        (),
+        "--model",
+        multiple=True,
+        required=True,
+        is_path=True,
+        metavar="SPEC",
+        help="Specification that the formulas are compared with; may be repeated.",
+    )
+    allow_outside: Places = option((), "--allow-outside", **OUTSIDE)
+    output: str | None = file_option("Page to write, .html: each formula with its verdict.")
+    errata: str | None = option(None, "--errata", is_path=True, help="List of errata to write, as LaTeX.")
+    strict: bool = option(False, "--strict", help="Exit with code 4 unless every formula is right.")
+    as_json: bool = option(False, "--json", **JSON)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class AuditOptions:
     """Options of ``symflex audit``."""
 
     tfs: Sequence[str] = option(
         (), "--tf", **SOME_TFS, help="Only the formula of this transfer function; may be repeated."
+    )
+    latex: str | None = option(
+        None, "--latex", is_path=True, metavar="FILE.tex", help="Judge the formulas of a paper instead."
+    )
+    equation: str | None = option(
+        None, "--equation", metavar="LABEL", help="With --latex: only the equation with this label or tag."
     )
     strict: bool = option(False, "--strict", help="Exit with code 4 unless every formula is proved equal.")
     as_json: bool = option(False, "--json", **JSON)

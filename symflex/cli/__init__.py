@@ -34,6 +34,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "live": ("live", "Write a page with a slider for every parameter."),
     "export": ("formulas", "Write numeric code, LaTeX, or a model for another program."),
     "audit": ("formulas", "Compare printed formulas with derived ones."),
+    "referee": ("report", "Judge the formulas of a paper in LaTeX by models."),
     "fit": ("measured", "Fit resonances to measured frequency responses."),
     "measure": ("measured", "Write the frequency response of a time record or of a model."),
     "report": ("report", "Write a report: a page, a PDF, figures, code, data."),
@@ -48,7 +49,7 @@ GROUPS = {  # how the help lists them
     "Model": "check derive draw",
     "Analyse": "roots rational respond shape sweep stability peak colocation",
     "Draw and export": "plot live export report",
-    "Papers and measurements": "audit fit measure",
+    "Papers and measurements": "audit referee fit measure",
 }
 
 

@@ -18,6 +18,7 @@ from symflex.expressions import Equation
 from symflex.options import AuditOptions, CheckOptions, DeriveOptions, ExportOptions, highest_frequency
 
 if TYPE_CHECKING:
+    from symflex.audit import Audit
     from symflex.codegen.export import Exporter
     from symflex.model import Model, ModelParameter
 
@@ -403,9 +404,15 @@ def audit(spec: Specification, given: AuditOptions) -> int:
     from symflex.audit.text import audit_document, audit_text, table_text
 
     model = spec.load()
-    audits = audit_layer.audit(model, given.tfs)
-    tables = () if given.tfs else audit_layer.audit_tables(model, spec.source(), spec.load_changed)
-    if not model.published and not model.tables:
+    if given.latex is None and given.equation is not None:
+        raise refused("--equation needs --latex")
+    if given.latex is not None:
+        audits = _audits_of_paper(model, given)
+    else:
+        audits = audit_layer.audit(model, given.tfs)
+    is_all = not given.tfs and given.latex is None
+    tables = audit_layer.audit_tables(model, spec.source(), spec.load_changed) if is_all else ()
+    if not (model.published or model.tables or given.latex):
         note('nothing is published in this specification: put a formula into [published."OUT/IN"]')
     if given.as_json:
         emit_json(audit_document(audits, tables))
@@ -416,3 +423,17 @@ def audit(spec: Specification, given: AuditOptions) -> int:
     is_equal = bool(audits or tables) and all(each.verdict == "equal" for each in audits)
     is_right = all(each.is_right for each in tables)
     return 4 if given.strict and not (is_equal and is_right) else 0
+
+
+def _audits_of_paper(model: Model, given: AuditOptions) -> tuple[Audit, ...]:
+    """Return the audits of the formulas of a paper that are about a model; say which are not."""
+    from symflex.papers.source import read_paper
+    from symflex.report.referee import referee  # imports the packages of reports
+
+    assert given.latex is not None
+    judged = referee(read_paper(Path(given.latex)), [model], given.equation)
+    for formula in judged:
+        if formula.audit is None:
+            note(f"{formula.where}: {formula.said}; {formula.reason}")
+    audits = tuple(formula.audit for formula in judged if formula.audit is not None)
+    return tuple(a for a in audits if not given.tfs or a.tf.name in given.tfs)

@@ -1,4 +1,4 @@
-"""``symflex report``."""
+"""Documents about models: ``report`` and ``referee``."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from datetime import UTC, date, datetime
 from pathlib import Path
 
 from symflex.cli.command import bare_command
-from symflex.cli.reporting import note, say
+from symflex.cli.reporting import answer, note, say, write
 from symflex.errors import refused
-from symflex.options import ReportOptions
+from symflex.options import RefereeOptions, ReportOptions
 
 EPOCH_VARIABLE = "SOURCE_DATE_EPOCH"
 
@@ -51,6 +51,36 @@ def report(given: ReportOptions) -> int:
         note(f"warning: {warning}")
     say(f"open {published.page}")
     return max(published.code, report.code)
+
+
+@bare_command("referee", RefereeOptions)
+def referee(given: RefereeOptions) -> int:
+    """Judge the displayed formulas of a paper by models.
+
+    PAPER.tex is read as it stands, with the macros it defines and the files beside it that it reads. Each
+    displayed formula is proved right, right but for a factor, or different, with the term that is wrong;
+    others are listed with the reason why they were not judged. [notation] of a SPEC says what the symbols of
+    the paper are called there. A difference is a result, so the exit code is 0; with --strict it is 4.
+    """
+    from symflex import pipeline
+    from symflex.papers.source import read_paper
+    from symflex.report import referee as court
+    from symflex.report.page import report_page
+
+    models = [pipeline.load(path, tuple(map(Path, given.allow_outside))) for path in given.models]
+    paper = read_paper(Path(given.paper))
+    for problem in paper.notes:
+        note(problem.render())
+    judged = court.referee(paper, models)
+    answer(
+        given.as_json, lambda: court.referee_document(given.paper, judged), lambda: court.referee_text(judged)
+    )
+    if given.output is not None:
+        write(given.output, report_page(court.referee_page(Path(given.paper).name, judged)))
+    if given.errata is not None:
+        write(given.errata, court.errata_latex(judged))
+    is_right = bool(judged) and all(j.verdict == "equal" for j in judged)
+    return 4 if given.strict and not is_right else 0
 
 
 def _date(given: str | None) -> str:

@@ -229,18 +229,25 @@ def defined_symbol(statement: PrintedEquation) -> tuple[PrintedSymbol, PrintedEq
     try:
         symbol = reader.whole_symbol()
         if reader.text == "^":
+            typed = text_of(reader.tokens[reader.at + 1 : group_end(reader.tokens, reader.at + 1)]).strip(
+                "{}"
+            )
             reader.take()
             reader.group()
+            if typed.isalpha():  # G^v is a name where nothing else has been said of G
+                symbol = symbol._replace(script=f"{symbol.script}^{typed}")
         reader.applied(Name(symbol.name))
     except SpecError:
         return None
     return (symbol, statement) if reader.at == len(reader.tokens) and not reader.open else None
 
 
-def definition(statement: PrintedEquation, notation: PaperNotation) -> Expression:
-    """Return what an equation says its symbol is; of ``a^2 = b`` the principal root."""
-    value = read_formula(statement.sides[-1], notation, laplace=laplace_of(statement, notation))
-    left_side = read_formula(statement.sides[0], notation)
+def definition(
+    statement: PrintedEquation, notation: PaperNotation, bound: Mapping[str, int] | None = None
+) -> Expression:
+    """Return what an equation says its symbol is, of ``a^2 = b`` the root; ``bound`` are indices."""
+    value = read_formula(statement.sides[-1], notation, bound, laplace_of(statement, notation))
+    left_side = read_formula(statement.sides[0], notation, bound)
     if not isinstance(left_side, Power):
         return value
     if not isinstance(left_side.exponent, Number) or left_side.exponent.value < 1:
@@ -1126,8 +1133,8 @@ class _LatexReader:
             if word.isalnum():
                 return word
         word = "".join(LETTERS.get(t, t) for t in texts)
-        whole = PrintedSymbol(symbol.base, symbol.marks, symbol.script + index + word)
-        if word.isalpha() and whole in self.notation.names:
+        scripts = (symbol.script + index + word, f"{symbol.script}{index}^{word}")
+        if word.isalpha() and any(symbol._replace(script=x) in self.notation.names for x in scripts):
             return word
         return None
 

@@ -1,0 +1,668 @@
+r"""A paper in LaTeX against models: which of its formulas are right, which are not, and what is wrong.
+
+Input: the mathematics of a paper, and models. Output: a verdict for every displayed formula, shown as text,
+JSON, a page, and a list of errata. Of ``\frac{X}{F} = ...`` the left side says which transfer function the
+right side should be. Of ``G = ...`` nothing does, and every transfer function of the models is tried.
+Equations that define a symbol, displayed or in a sentence, are read where a formula needs them.
+
+A formula is called right or wrong only where that is proved, as :mod:`symflex.audit` does. Where no small
+change makes a formula right, symflex looks for a slip of print: brackets left out after a factor, a root
+whose bar is too short, or the factor that another formula of the paper lacks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Final, Literal
+
+from symflex.audit import Audit, judge
+from symflex.audit.text import VERDICTS
+from symflex.budget import spend
+from symflex.errors import BudgetError, ModelError, Span, SpecError, SymflexError, counted, no_such
+from symflex.expressions import (
+    Call,
+    Expression,
+    Name,
+    Negative,
+    Product,
+    Quotient,
+    Sum,
+    format_expression,
+    is_number,
+    names,
+    negative,
+    number,
+    power,
+    product_of,
+    quotient,
+    substitute,
+    sum_of,
+    with_children,
+)
+from symflex.model import Model, Published
+from symflex.model.analysis import notation_of_model, readable_names
+from symflex.papers.formula import (
+    PaperNotation,
+    PrintedSymbol,
+    defined_symbol,
+    definition,
+    laplace_of,
+    read_formula,
+)
+from symflex.papers.source import Paper, PrintedEquation, statements, written
+from symflex.print.label import labels_of
+from symflex.print.latex import latex_expression, model_labels
+from symflex.report.document import Badge, Block, Code, Section, Tone, labelled, marked, text
+from symflex.report.report import Report
+from symflex.report.sections.formulas import equations
+from symflex.transfer.of_model import derive_all
+
+Judgement = Literal["equal", "factor", "different", "other model", "not read"]
+SCHEMA: Final = "symflex.referee/1"
+SAID: Final[Mapping[Judgement, tuple[str, Tone]]] = {
+    "equal": ("right (proved)", "good"),
+    "factor": ("right but for a factor (proved)", "fair"),
+    "different": ("DIFFERS (proved)", "bad"),
+    "other model": ("not about these models", "quiet"),
+    "not read": ("not judged", "quiet"),
+}
+DEFINES: Final = "it defines"
+MOST_PAIRS: Final = 6  # transfer functions that a formula without a left side is compared with
+SHORT: Final = 2  # changes up to which a formula without a left side is called a misprint of a function
+
+
+@dataclass(frozen=True)
+class JudgedFormula:
+    """A displayed formula of a paper and what was found."""
+
+    latex: str  # as it is typed
+    label: str  # its label or tag, empty without one
+    span: Span  # where it begins
+    verdict: Judgement
+    reason: str = ""  # why it could not be judged, or what a verdict rests on
+    slip: str = ""  # what is wrong, with what would be right
+    model: Model | None = None  # what it is about
+    audit: Audit | None = None
+    repaired: Audit | None = None  # of the formula without a slip of print
+
+    @property
+    def said(self) -> str:
+        """The verdict in words."""
+        return "a definition" if self.reason.startswith(DEFINES) else SAID[self.verdict][0]
+
+    @property
+    def where(self) -> str:
+        """How the paper calls it, and its line."""
+        line = f"line {self.span.line}"
+        return f"{self.label}, {line}" if self.label else line
+
+
+class _Unjudged(Exception):  # noqa: N818 (what is raised is a verdict, not an error)
+    def __init__(self, verdict: Judgement, reason: str) -> None:
+        super().__init__(reason)
+        self.verdict, self.reason = verdict, reason
+
+
+def referee(paper: Paper, models: Sequence[Model], only: str | None = None) -> tuple[JudgedFormula, ...]:
+    """Return the displayed formulas of a paper, judged, in their order; or those with one label or tag."""
+    court = _Court(paper, models)
+    asked = [item for item in court.items if only is None or item.label.strip("()") == only.strip("()")]
+    if not asked and only is not None:
+        labels = sorted({item.label for item in court.items if item.label})
+        raise no_such("equation", only, labels, "labels and tags")
+    found = [court.judged(item) if isinstance(item, _Item) else item for item in asked]
+    for i, judged in enumerate(found):
+        if judged.span in court.used and judged.verdict in ("other model", "not read"):
+            found[i] = replace(judged, verdict="other model", reason=court.used[judged.span])
+    audits = [j.repaired or j.audit for j in found]
+    scales = dict.fromkeys(a.ratio for a in audits if a is not None and a.ratio is not None)
+    return tuple(_with_scale(j, scales) for j in found)
+
+
+@dataclass(frozen=True)
+class _Item:
+    """One displayed equation."""
+
+    equation: PrintedEquation
+    label: str
+
+    @property
+    def latex(self) -> str:
+        return written(self.equation.tokens)
+
+
+class _Court:
+    """The paper's definitions and the models' functions, each derived once."""
+
+    def __init__(self, paper: Paper, models: Sequence[Model]) -> None:
+        self.models = models
+        self.definitions: dict[PrintedSymbol, PrintedEquation] = {}
+        self.items: list[_Item | JudgedFormula] = []
+        self.used: dict[
+            Span, str
+        ] = {}  # equations that define what other formulas contain, and what they define
+        self.derived: dict[tuple[int, tuple[str, str]], object] = {}
+        for display in paper.displays:
+            try:
+                if display.problem is not None:
+                    raise SpecError(display.problem)
+                found = statements(display.tokens)
+            except SpecError as error:
+                if not display.is_inline:
+                    reason = error.diagnostics[0].message
+                    latex = display.span.text[:200]
+                    self.items.append(JudgedFormula(latex, "", display.span, "not read", reason))
+                continue
+            for equation in found:
+                defined = defined_symbol(equation)
+                if defined is not None:
+                    self.definitions.setdefault(*defined)
+            if not display.is_inline:
+                self.items += _labelled(found, display.labels)
+
+    def judged(self, item: _Item) -> JudgedFormula:
+        """Return the verdict of the first model that the formula is about."""
+        last = JudgedFormula(item.latex, item.label, item.equation.span, "other model")
+        for model in self.models:
+            try:
+                return self.judged_by(item, model)
+            except _Unjudged as reason:
+                if reason.verdict == "not read" or last.verdict == "other model":
+                    last = replace(last, verdict=reason.verdict, reason=reason.reason)
+            except SpecError as error:
+                said = error.diagnostics[0]
+                place = f"{said.span.line}:{said.span.column}: " if said.span is not None else ""
+                last = replace(last, verdict="not read", reason=f"{place}{said.message}")
+        return last
+
+    def judged_by(self, item: _Item, model: Model) -> JudgedFormula:
+        equation = item.equation
+        if equation.is_condition or len(equation.sides) < 2:  # noqa: PLR2004
+            raise _Unjudged("other model", "it is no equation")
+        if equation.nearly is not None:
+            raise _Unjudged("not read", "it holds only nearly, by its sign")
+        notation = self.notation(model)
+        laplace = laplace_of(equation, notation)
+        sides = [read_formula(side, notation, laplace=laplace) for side in equation.sides]
+        defined = {s.name for s, e in self.definitions.items() if e is equation}
+        claims = list(_claims(sides, model, {*notation.names.values()} - defined))
+        if not claims:
+            raise _Unjudged("other model", "it names no transfer function of the models")
+        best: JudgedFormula | None = None
+        for tfs, formula in claims:
+            judged = self.best(item, model, tfs, formula, notation)
+            if best is None or _rank(judged) > _rank(best):
+                best = judged  # of G = a = b the worst side counts
+        assert best is not None
+        return best
+
+    def best(
+        self,
+        item: _Item,
+        model: Model,
+        tfs: Sequence[tuple[str, str]],
+        formula: Expression,
+        notation: PaperNotation,
+    ) -> JudgedFormula:
+        """Return the verdict on a formula that is one of so many transfer functions."""
+        lines = self.lines(formula, model, notation, item.equation.span)
+        answers: list[JudgedFormula] = []
+        for tf in tfs[:MOST_PAIRS]:
+            printed = Published(tf, formula, lines, None, "", item.equation.span, is_latex=True)
+            for meant in dict.fromkeys((_in_radians(printed, model), printed)):
+                if not any(a.verdict == "equal" for a in answers):
+                    answers.append(_judged(item, model, self.audit(model, meant)))
+        best = min(answers, key=_rank)
+        is_unsure = len(tfs) > 1 and best.verdict == "different"
+        if is_unsure and not (best.audit is not None and 0 < len(best.audit.changes) <= SHORT):
+            raise _Unjudged("other model", "it is none of the transfer functions of the models")
+        if best.verdict == "different" and best.audit is not None and not best.audit.changes:
+            best = _repaired(best, self)
+        return best
+
+    def audit(self, model: Model, published: Published) -> Audit:
+        key = self.models.index(model), published.tf
+        if key not in self.derived:
+            (self.derived[key],) = derive_all(model, (published.tf,))
+        return judge(self.derived[key], published)  # type: ignore[arg-type]
+
+    def notation(self, model: Model) -> PaperNotation:
+        """Return what symbols mean in a paper about a model: its own definitions hide those of the model."""
+        base = notation_of_model(model, model.notation)
+        defined = {d.name for d in model.definitions}
+        more = {
+            symbol: symbol.name
+            for symbol in self.definitions
+            if base.names.get(symbol, symbol.name) not in {*base.names.values()} - defined
+        }
+        ends = {item.name for group in (model.outputs, model.inputs) for item in group}
+        for symbol, name in base.names.items():  # a paper prints X(s) for the transform of x(t)
+            twin = symbol._replace(
+                base=symbol.base.swapcase() if len(symbol.base) == 1 else _turned(symbol.base)
+            )
+            if name in ends and twin not in base.names:
+                more.setdefault(twin, name)
+        varying = base.signals | {symbol.name for symbol in self.definitions}
+        return replace(base.with_names(more), signals=varying - {p.name for p in model.parameters})
+
+    def lines(
+        self, formula: Expression, model: Model, notation: PaperNotation, where: Span
+    ) -> tuple[tuple[str, Expression], ...]:
+        """Return the definitions that a formula needs; symbols without a meaning raise a verdict."""
+        readable = readable_names(model)
+        meant = {*readable.constants, *readable.definitions}
+        lines: dict[str, Expression] = {}
+        needed: dict[Span, str] = {}
+        pending, unknown = [formula], list[str]()
+        while pending:
+            for node in names(pending.pop()):
+                if not isinstance(node, Name) or node.name in lines:
+                    continue
+                equation, bound = self.defining(node.name)
+                if node.name in meant and (equation is None or node.name not in readable.definitions):
+                    continue
+                if equation is None:
+                    unknown.append(node.name)
+                    continue
+                lines[node.name] = self.meaning(equation, model, notation, bound)
+                symbol = next(s.name for s, e in self.definitions.items() if e is equation)
+                needed[equation.span] = f"{DEFINES} {symbol} of line {where.line}"
+                pending.append(lines[node.name])
+        if unknown:
+            listed = ", ".join(dict.fromkeys(unknown))
+            raise _Unjudged("not read", f"symbols without a meaning: {listed}; tie them in [notation]")
+        self.used |= needed
+        return tuple(lines.items())
+
+    @staticmethod
+    def meaning(
+        equation: PrintedEquation, model: Model, notation: PaperNotation, bound: Mapping[str, int]
+    ) -> Expression:
+        """Return what an equation defines: its last side that says more than which output and input it is."""
+        ends = {item.name for group in (model.outputs, model.inputs) for item in group}
+        for count in range(len(equation.sides), 1, -1):
+            value = definition(equation._replace(sides=equation.sides[:count]), notation, bound)
+            if not any(_holds(value, end) for end in ends):
+                return value
+        return value
+
+    def defining(self, name: str) -> tuple[PrintedEquation | None, Mapping[str, int]]:
+        """Return the equation that defines a name; R_3 may be defined as R_i, and then i is 3."""
+        for symbol, equation in self.definitions.items():
+            if symbol.name == name:
+                return equation, {}
+        for symbol, equation in self.definitions.items():
+            script, letter = symbol.script[:-1], symbol.script[-1:]
+            stem = symbol._replace(script=script).name
+            rest = name.removeprefix(stem if script else f"{stem}_")
+            if letter.isalpha() and letter.islower() and rest.isdigit() and name != rest:
+                return equation, {letter: int(rest)}
+        return None, {}
+
+
+def _in_radians(printed: Published, model: Model) -> Published:
+    """Return a formula whose frequencies are in radians, as papers mean them, where the model has cycles."""
+    cycles = {p.name: p.cycles for p in model.parameters if p.name in {c.name for c in model.conversions}}
+    turn = product_of([number(2), Name("pi")])
+    meant = {name: product_of([power(turn, count), Name(name)]) for name, count in cycles.items()}
+    lines = tuple((name, substitute(line, meant)) for name, line in printed.where)
+    return replace(printed, expression=substitute(printed.expression, meant), where=lines)
+
+
+def _turned(base: str) -> str:
+    return base.capitalize() if base.islower() else base.lower()
+
+
+def _labelled(found: Sequence[PrintedEquation], labels: Sequence[tuple[int, str]]) -> Iterator[_Item]:
+    """Yield equations with the label that stands in each, or the only one of their display."""
+    starts = [e.span.start for e in found]
+    for i, equation in enumerate(found):
+        end = starts[i + 1] if i + 1 < len(starts) else float("inf")
+        own = [name for at, name in labels if starts[i] <= at < end or (i == 0 and at < starts[0])]
+        only = labels[0][1] if len(labels) == 1 else ""
+        yield _Item(equation, own[0] if own else only)
+
+
+def _claims(
+    sides: Sequence[Expression], model: Model, known: set[str]
+) -> Iterator[tuple[tuple[tuple[str, str], ...], Expression]]:
+    """Yield which transfer functions a side of an equation should be, and the formula for it.
+
+    A name that is not known, as it has no meaning or this equation gives it one, is no formula.
+    """
+    pairs = model.transfer_functions
+    found = False
+    for i, left in enumerate(sides):
+        for right in sides[i + 1 :]:
+            for pair in pairs:
+                formula = _solved(left, right, pair)
+                if (
+                    formula is not None
+                    and _says_something(formula, pair)
+                    and not _is_function(formula, known)
+                ):
+                    found = True
+                    yield (pair,), formula
+    if not found and not any(_holds(side, end) for side in sides for pair in pairs for end in pair):
+        if _is_function(sides[0], known):
+            yield tuple(pairs), sides[-1]
+
+
+def _says_something(formula: Expression, pair: tuple[str, str]) -> bool:
+    held = {n.name for n in names(formula) if isinstance(n, Name)}
+    return bool(held) and not held & set(pair)
+
+
+def _is_function(expression: Expression, known: set[str]) -> bool:
+    """Tell whether a side is a name such as G, or a quotient of names that the model does not have."""
+    match expression:
+        case Name(name):
+            return name not in known
+        case Quotient(Name(above), Name(below)):
+            return above not in known and below not in known
+    return False
+
+
+def _holds(expression: Expression, name: str) -> bool:
+    return any(isinstance(n, Name) and n.name == name for n in names(expression))
+
+
+def _solved(left: Expression, right: Expression, pair: tuple[str, str]) -> Expression | None:
+    """Return the output over the input as an equation says it, ``None`` if it is no product of them."""
+    powers = []
+    rests = [left, right]
+    for name in pair:
+        split = [_split(rest, name) for rest in rests]
+        if split[0] is None or split[1] is None:
+            return None
+        rests = [split[0][0], split[1][0]]
+        powers.append(split[0][1] - split[1][1])
+    if powers == [1, -1]:
+        return _over(rests[1], rests[0])
+    return _over(rests[0], rests[1]) if powers == [-1, 1] else None
+
+
+def _over(above: Expression, below: Expression) -> Expression:
+    return above if is_number(below, 1) else quotient(above, below)
+
+
+def _split(node: Expression, name: str) -> tuple[Expression, int] | None:
+    """Return an expression without a name that is a factor, and the power it had; ``None`` if it is none."""
+    if not _holds(node, name):
+        return node, 0
+    match node:
+        case Name():
+            return number(1), 1
+        case Negative(operand):
+            inner = _split(operand, name)
+            return None if inner is None else (negative(inner[0]), inner[1])
+        case Product(factors):
+            holding = [f for f in factors if _holds(f, name)]
+            inner = _split(holding[0], name) if len(holding) == 1 else None
+            if inner is None:
+                return None
+            return product_of(inner[0] if f is holding[0] else f for f in factors), inner[1]
+        case Quotient(above, below):
+            top, bottom = _split(above, name), _split(below, name)
+            if top is None or bottom is None:
+                return None
+            return _over(top[0], bottom[0]), top[1] - bottom[1]
+    return None
+
+
+_ORDER: Final = ("equal", "factor", "different", "not read", "other model")
+
+
+def _rank(judged: JudgedFormula) -> tuple[int, int]:
+    changes = len(judged.audit.changes) if judged.audit is not None else 0
+    return _ORDER.index(judged.verdict), changes or 99
+
+
+def _judged(item: _Item, model: Model, audit: Audit) -> JudgedFormula:
+    """Return what an audit says of a formula."""
+    found = JudgedFormula(item.latex, item.label, item.equation.span, "not read", model=model, audit=audit)
+    if audit.verdict == "equal":
+        return replace(found, verdict="equal")
+    if audit.verdict != "differs":
+        return replace(found, reason=f"it {VERDICTS[audit.verdict]}")
+    if audit.ratio is not None:
+        return replace(found, verdict="factor", slip=_ratio_said(audit))
+    return replace(found, verdict="different", slip=_changes_said(audit))
+
+
+def _ratio_said(audit: Audit) -> str:
+    assert audit.ratio is not None
+    return f"it is {format_expression(audit.ratio)} times the derived function"
+
+
+def _changes_said(audit: Audit) -> str:
+    said = []
+    for change in audit.changes:
+        printed, right = format_expression(change.printed), format_expression(change.derived)
+        said.append(
+            f"{change.place}: {printed} should be {right}"
+            if printed != "0"
+            else f"{change.place}: {right} is missing"
+        )
+    return "; ".join(said)
+
+
+# --- slips of print ---
+
+
+def _repaired(judged: JudgedFormula, court: _Court) -> JudgedFormula:
+    """Return a formula with the slip of print, if any, without which it is right or nearly so."""
+    assert judged.audit is not None and judged.model is not None
+    printed = judged.audit.published
+    for words, other in _misprints(printed):
+        try:
+            audit = court.audit(judged.model, other)
+        except (SpecError, ModelError):
+            continue
+        except BudgetError:
+            spend()
+            continue
+        if audit.verdict == "equal":
+            return replace(judged, slip=words, repaired=audit)
+        if audit.verdict == "differs" and (audit.ratio is not None or audit.changes):
+            more = _ratio_said(audit) if audit.ratio is not None else _changes_said(audit)
+            return replace(judged, slip=f"{words}; then {more}", repaired=audit)
+    return judged
+
+
+def _misprints(printed: Published) -> Iterator[tuple[str, Published]]:
+    """Yield a formula without slips of print, with what each is."""
+    root = "the bar of a root is too short"
+    longer = _changed(printed, _with_longer_bars)
+    bracketed = _changed(printed, _with_brackets)
+    if longer is not None:
+        yield root, longer
+    if bracketed is not None:
+        yield "brackets are missing after a factor", bracketed
+        if longer is not None and (both := _changed(bracketed, _with_longer_bars)) is not None:
+            yield f"brackets are missing after a factor, and {root}", both
+
+
+def _changed(printed: Published, change: object) -> Published | None:
+    apply = change  # a function of an expression
+    expression = apply(printed.expression)  # type: ignore[operator]
+    where = tuple((name, apply(line)) for name, line in printed.where)  # type: ignore[operator]
+    is_same = expression == printed.expression and where == printed.where
+    return None if is_same else replace(printed, expression=expression, where=where)
+
+
+def _with_longer_bars(node: Expression) -> Expression:
+    """Return an expression in which every root is over the factor after it as well."""
+    parts = [_with_longer_bars(child) for child in node.children]
+    if not isinstance(node, Product):
+        return with_children(node, parts) if parts else node
+    factors: list[Expression] = []
+    for part in parts:
+        before = factors[-1] if factors else None
+        if isinstance(before, Call) and before.name == "sqrt" and isinstance(part, Name):
+            factors[-1] = Call("sqrt", product_of([before.argument, part]))
+        else:
+            factors.append(part)
+    return product_of(factors)
+
+
+def _with_brackets(node: Expression) -> Expression:
+    """Return an expression in which the factor in front of a sum's first term is in front of the sum."""
+    parts = [_with_brackets(child) for child in node.children]
+    whole = with_children(node, parts) if parts else node
+    if not isinstance(whole, Sum):
+        return whole
+    first = whole.terms[0]
+    inner = first.operand if isinstance(first, Negative) else first
+    if not isinstance(inner, Product) or not any(isinstance(f, Call) for f in inner.factors):
+        return whole
+    last = max(i for i, f in enumerate(inner.factors) if isinstance(f, Call))
+    if last == len(inner.factors) - 1:
+        return whole
+    front = product_of(inner.factors[: last + 1])
+    rest = sum_of([product_of(inner.factors[last + 1 :]), *whole.terms[1:]])
+    return product_of([negative(front) if first is not inner else front, rest])
+
+
+def _with_scale(judged: JudgedFormula, scales: Iterable[Expression]) -> JudgedFormula:
+    """Return a formula judged anew with the factor that another formula of the paper lacks."""
+    audit = judged.repaired or judged.audit
+    if judged.verdict != "different" or audit is None or audit.changes:
+        return judged
+    for ratio in scales:
+        candidates = [("", audit.published)]
+        candidates += list(_misprints(audit.published)) if judged.repaired is None else []
+        for words, published in candidates:
+            scaled = replace(published, scale=quotient(number(1), ratio))
+            try:
+                again = judge(audit.tf, scaled)
+            except SymflexError:
+                continue
+            said = [words] if words else []
+            if again.verdict == "equal":
+                said.append(f"it is {format_expression(ratio)} times the derived function")
+            elif again.changes:
+                said.append(_changes_said(again))
+                said.append(f"the factor {format_expression(ratio)} is left out, as in other formulas")
+            else:
+                continue
+            return replace(judged, slip="; ".join(said), repaired=again)
+    return judged
+
+
+# --- what is shown ---
+
+
+def referee_document(paper: str, judged: Sequence[JudgedFormula]) -> dict[str, object]:
+    """Return the document ``symflex referee --json`` prints."""
+    return {
+        "schema": SCHEMA,
+        "paper": paper,
+        "formulas": [
+            {
+                "label": j.label or None,
+                "line": j.span.line,
+                "column": j.span.column,
+                "file": j.span.origin.source.name,
+                "latex": j.latex,
+                "verdict": j.verdict,
+                "tf": None if j.audit is None else j.audit.tf.name,
+                "model": None if j.model is None else j.model.title or None,
+                "slip": j.slip or None,
+                "reason": j.reason or None,
+            }
+            for j in judged
+        ],
+        "tables": [],
+    }
+
+
+def referee_text(judged: Sequence[JudgedFormula]) -> str:
+    """Return the verdicts as text."""
+    blocks = []
+    for j in judged:
+        tf = f"{j.audit.tf.name}   " if j.audit is not None else ""
+        lines = [f"{j.where}   {tf}{j.said}"]
+        lines += [f"  {said}" for said in (j.slip, j.reason) if said]
+        blocks.append("\n".join(lines))
+    count = {verdict: sum(j.verdict == verdict for j in judged) for verdict in SAID}
+    total = ", ".join(f"{n} {verdict}" for verdict, n in count.items() if n)
+    return "\n\n".join(
+        [*blocks, f"{counted(len(judged), 'formula')}: {total}" if judged else "no displayed formulas"]
+    )
+
+
+def referee_page(title: str, judged: Sequence[JudgedFormula]) -> Report:
+    """Return a page with the formulas beside their verdicts."""
+    sections = [Section(j.where, tuple(_shown(j)), f"formula-{i + 1}") for i, j in enumerate(judged)]
+    return Report(title, "printed formulas against models", "", tuple(sections), {}, (), 0)
+
+
+def _shown(j: JudgedFormula) -> Iterator[Block]:
+    yield marked(Badge(j.said, SAID[j.verdict][1]), "; ".join(filter(None, (j.slip, j.reason))))
+    if j.audit is None or j.model is None:
+        yield text(Code(" ".join(j.latex.split())))
+        return
+    labels = _labels(j.audit, j.model)
+    left_side = labelled(Quotient(*map(Name, j.audit.published.tf)), labels)
+    yield equations(
+        [(left_side, j.audit.published.expression)],
+        labels,
+        f"{j.audit.tf.name} as printed",
+        j.audit.formula.lines,
+    )
+    best = j.repaired or j.audit
+    if best.correction is not None:
+        yield text("Right, in the same symbols:")
+        yield equations(
+            [(left_side, best.correction.expression)],
+            labels,
+            f"{j.audit.tf.name}, corrected",
+            best.correction.lines,
+        )
+    elif j.repaired is not None:
+        yield text("Without the slip:")
+        yield equations(
+            [(left_side, best.published.expression)],
+            labels,
+            f"{j.audit.tf.name}, repaired",
+            best.formula.lines,
+        )
+    elif j.verdict == "different" and best.derived is not None:
+        yield text("Derived, in the same symbols:")
+        yield equations([(left_side, best.derived)], labels, f"{j.audit.tf.name}, derived")
+
+
+def _labels(audit: Audit, model: Model) -> dict[str, str]:
+    labels = model_labels(model)
+    ends = [(name, "") for name in audit.published.tf if name not in labels]
+    return labels_of([*ends, *((name, "") for name, _ in audit.formula.lines if name not in labels)], labels)
+
+
+def errata_latex(judged: Sequence[JudgedFormula]) -> str:
+    """Return a list of errata for LaTeX, to be read into a document."""
+    items = []
+    for j in judged:
+        best = j.repaired or j.audit
+        if j.verdict not in ("different", "factor") or best is None or j.model is None:
+            continue
+        labels = _labels(best, j.model)
+        name = rf"Eq.~\eqref{{{j.label}}}" if j.label and not j.label.startswith("(") else j.label
+        said = [
+            f"for ${latex_expression(c.printed, labels)}$ read ${latex_expression(c.derived, labels)}$"
+            for c in best.changes
+        ]
+        if best.ratio is not None:
+            said.append(f"divide the right side by ${latex_expression(best.ratio, labels)}$")
+        elif best.published.scale is not None:
+            said.append(f"multiply the right side by ${latex_expression(best.published.scale, labels)}$")
+        right = best.correction.expression if best.correction is not None else best.derived
+        if not said and right is not None:
+            said.append(f"the right side should be ${latex_expression(right, labels)}$")
+        if said:
+            items.append(rf"  \item {name or f'Line {j.span.line}'}: {'; '.join(said)}.")
+    return "\n".join([r"\begin{itemize}", *items, r"\end{itemize}", ""]) if items else "% no errata\n"
+
+
+__all__ = ["JudgedFormula", "errata_latex", "referee", "referee_document", "referee_page", "referee_text"]

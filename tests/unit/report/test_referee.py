@@ -1,0 +1,94 @@
+"""A paper judged by models. The right formulas are textbook ones; the slips in others were planted here."""
+
+from __future__ import annotations
+
+import pytest
+
+from symflex.errors import Text
+from symflex.model import Model
+from symflex.papers.source import read_text
+from symflex.pipeline import loads
+from symflex.report.page import report_page
+from symflex.report.referee import errata_latex, referee, referee_document, referee_page, referee_text
+
+MODEL = """
+symflex = 1
+title = "Two masses"
+parameters = { m_1 = "1 kg", m_2 = "2 kg", k = "5 N/m", b = "0.2 N*s/m" }
+inputs = { F = { force = "x_1" } }
+outputs = { X_1 = "x_1", X_2 = "x_2" }
+[elements]
+a = { type = "mass", at = "x_1", m = "m_1" }
+c = { type = "mass", at = "x_2", m = "m_2" }
+spring = { type = "spring", between = ["x_1", "x_2"], k = "k" }
+damper = { type = "damper", between = ["x_1", "x_2"], b = "b" }
+[notation]
+M = "m_2"
+"""
+PAPER = r"""
+\newcommand{\D}{\Delta}
+\begin{align}
+\frac{X_1(s)}{F(s)} &= \frac{Ms^2 + bs + k}{\D} \label{one} \\
+X_2(s) &= \frac{bs + 2k}{\D} F(s) \label{two} \\
+\frac{x_2}{F} &= 2\frac{bs + k}{\D} \tag{3} \\
+\frac{Y}{U} &= \frac{q}{s} \label{other} \\
+G(s) &= \frac{bs+k}{s^2[m_1 M s^2 + (m_1+M)(bs+k)]} \label{found} \\
+\frac{X_1}{F} &= \sum_i a_i \label{sum}
+\end{align}
+with $\D = s^2[m_1 M s^2 + (m_1+M)(bs+k)]$.
+"""
+
+
+@pytest.fixture(scope="module")
+def model() -> Model:
+    return loads(MODEL)
+
+
+def judged(model: Model, paper: str = PAPER, only: str | None = None):
+    return referee(read_text(Text.alone("paper.tex", paper)), [model], only)
+
+
+def test_each_displayed_formula_gets_its_verdict(model: Model) -> None:
+    found = {j.label: (j.verdict, j.slip) for j in judged(model)}
+    assert found["one"] == ("equal", "")
+    assert found["two"] == ("different", "numerator: 2*k should be k")
+    assert found["(3)"] == ("factor", "it is 2 times the derived function")
+    assert found["found"] == ("equal", "")
+    assert found["other"][0] in ("not read", "other model")
+    assert found["sum"][0] == "not read"
+
+
+def test_one_equation_is_judged_alone(model: Model) -> None:
+    (alone,) = judged(model, only="3")
+    assert (alone.label, alone.verdict, alone.span.line) == ("(3)", "factor", 6)
+
+
+def test_json_has_every_formula_and_no_tables(model: Model) -> None:
+    document = referee_document("paper.tex", judged(model))
+    assert document["schema"] == "symflex.referee/1"
+    assert document["tables"] == []
+    two = document["formulas"][1]
+    assert {k: two[k] for k in ("label", "line", "verdict", "slip", "reason", "tf")} == {
+        "label": "two",
+        "line": 5,
+        "verdict": "different",
+        "slip": "numerator: 2*k should be k",
+        "reason": None,
+        "tf": "X_2/F",
+    }
+
+
+def test_text_page_and_errata_name_the_slip(model: Model) -> None:
+    found = judged(model)
+    assert "two, line 5   X_2/F   DIFFERS (proved)\n  numerator: 2*k should be k" in referee_text(found)
+    page = report_page(referee_page("paper.tex", found))
+    assert "DIFFERS" in page
+    assert "<script" not in page
+    assert errata_latex(found).splitlines()[1] == r"  \item Eq.~\eqref{two}: for $2 k$ read $k$."
+
+
+def test_brackets_left_out_after_a_root_are_named(model: Model) -> None:
+    paper = r"""\[ \frac{X_2}{F} = \frac{\sqrt{4} b s + k}{2s^2[m_1 M s^2 + (m_1+M)(bs+k)]} \]"""
+    (one,) = judged(model, paper)
+    assert one.verdict == "different"
+    assert one.slip
