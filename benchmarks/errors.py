@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
     from symflex.codegen.export import Export
     from symflex.model import Model
-    from symflex.transfer import AnyTransferFunction
+    from symflex.transfer import AnyTransferFunction, TransferFunction
 
     Values = Iterator[tuple[AnyTransferFunction, Sequence[complex]]]
 
@@ -91,9 +91,17 @@ class Case:
 def case_of(name: str) -> Case:
     """Derive a model, and enclose its transfer functions at all points."""
     model = pipeline.load(MODELS[name])
-    tfs = tuple(pipeline.derive_all(model))
+    tfs = tuple(map(_as_exported, pipeline.derive_all(model)))
     band = model.analysis.band or DEFAULT_BAND
     return Case(name, model, tfs, {tf.name: References.over(bind_any(tf), band) for tf in tfs})
+
+
+def _as_exported(tf: TransferFunction) -> AnyTransferFunction:
+    """Return the nested form of a function whose exponents have no formula, as exporters take it."""
+    if tf.is_nameless and not any(law.matrix for law in tf.kernels.dispersions):
+        (nested,) = pipeline.derive_nested(tf.model, [(tf.output.name, tf.input.name)])
+        return nested
+    return tf
 
 
 @cache
@@ -191,7 +199,15 @@ def in_julia(case: Case) -> Values:
                 # A band form takes s alone.
                 takes = functions[name].__code__.co_argcount - 1
                 given = [values[p.name] for p in tf.parameters][:takes]
-                yield tf, [functions[name](p, *given) for p in points.tolist()]
+                yield tf, [_unless_infinite(functions[name], p, *given) for p in points.tolist()]
+
+
+def _unless_infinite(function: Callable[..., complex], *given: complex) -> complex:
+    """Return a value, infinite at a pole: there Python raises, and Julia does not."""
+    try:
+        return function(*given)
+    except ZeroDivisionError:
+        return complex(math.inf)
 
 
 def in_node(case: Case) -> Values:
