@@ -17,6 +17,9 @@ from symflex.errors import Diagnostic, UsageError, nearest, refused
 
 FOLDERS: Final[dict[str, str]] = {
     "classics": "Beams, rods, shafts and a car of the textbooks",
+    "mechatronics": "Drives, joints, cranes and contact, of control and robotics",
+    "transducers": "Loudspeakers, an accelerometer, a galvanometer, a piezo stack",
+    "distributed": "Lines, pipes, ducts and rods, by their wave equations",
     "nonlinear": "Nonlinear equations and energies, about an operating point",
     "eppinger1988": "Models of a paper on robot flexibility, and its claims",
     "eppinger1988/loops": "Position and force loops around these models",
