@@ -20,10 +20,19 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from flint import acb, acb_mat, acb_series, arb, fmpz, fmpz_mpoly
+from flint import acb, acb_mat, acb_poly, acb_series, arb, fmpz, fmpz_mpoly
 
 from symflex.algebra import FUNCTIONS, LAPLACE, Factored, evaluated, summed, terms_of
-from symflex.balls import Arithmetic, UndecidedError, ball, current_terms, eliminate, raised, series_terms
+from symflex.balls import (
+    Arithmetic,
+    UndecidedError,
+    ball,
+    current_bits,
+    current_terms,
+    eliminate,
+    raised,
+    series_terms,
+)
 from symflex.budget import spend
 from symflex.equations import Continuum, Equations
 from symflex.errors import ModelError
@@ -35,8 +44,8 @@ from symflex.transfer.enclose import later
 
 ZERO = acb(0)
 FEW_TERMS = 16  # a polynomial of so many terms is summed term by term
-TERMS = 40  # terms of a Taylor step, which is halved until the last of them are small
-TAYLOR_BITS = 80  # bits by which the last terms are smaller than the states, twice those compared
+LEAST_TAYLOR_BITS = 80  # by which the last terms of a Taylor step are smaller, twice the bits compared
+BITS_A_TERM = 2  # of them: a step is halved until they are small
 LAST_TERMS = 3  # a coefficient may vanish by symmetry; so many in a row do not
 MOST_STEPS = 64  # Taylor steps along a member, halved ones too; a horn takes four
 FIRST_STEPS = 4  # steps that a member is cut into at first
@@ -319,7 +328,7 @@ def _stepped(
     for i in range(size):
         states[i, i] = acb(1)
     done, step, steps = arb(0), arb(1) / FIRST_STEPS, 0
-    with series_terms(TERMS):
+    with series_terms(_taylor_bits() // BITS_A_TERM):
         while done < 1:
             steps += 1
             if steps > MOST_STEPS:
@@ -339,27 +348,37 @@ def _stepped(
 
 def _taylor(series: Mapping[tuple[int, int], list[acb]], size: int, step: acb) -> acb_mat | None:
     """Return what takes states over one step, None where its last terms are too large."""
-    across = acb_mat(size, size)
-    for column in range(size):
-        terms = [[acb(int(i == column)) for i in range(size)]]
-        for k in range(TERMS - 1):
-            following = [ZERO] * size
-            for (i, j), coefficients in series.items():
-                total = ZERO
-                for m in range(k + 1):
-                    if coefficients[m] != 0:
-                        total = total + coefficients[m] * terms[k - m][j]
-                following[i] = following[i] + total
-            terms.append([x / (k + 1) for x in following])
-        power, sums, last = acb(1), [ZERO] * size, arb(0)
-        for k, term in enumerate(terms):
-            sums = [a + b * power for a, b in zip(sums, term, strict=True)]
-            if k >= TERMS - LAST_TERMS:
-                last = max(last, *((abs(b) * abs(power)).upper() for b in term), key=lambda b: float(b.mid()))
-            power = power * step
-        most = max(((abs(x)).upper() for x in sums), key=lambda b: float(b.mid()))
-        if not last.is_finite() or not last <= most * arb(2) ** -TAYLOR_BITS:
+    count = current_terms()
+    taps = [(i, j, m, c) for (i, j), own in series.items() for m, c in enumerate(own) if c != 0]
+    # Each state is a polynomial of one coefficient per column, so all columns are one operation.
+    terms = [[acb_poly([int(i == j) for j in range(size)]) for i in range(size)]]
+    for k in range(count - 1):
+        following = [acb_poly()] * size
+        for i, j, m, c in taps:
+            if m <= k:
+                following[i] = following[i] + terms[k - m][j] * c
+        terms.append([x * (acb(1) / (k + 1)) for x in following])
+    power, sums = acb(1), [acb_poly()] * size
+    last, across = [arb(0)] * size, acb_mat(size, size)
+    for k, term in enumerate(terms):
+        moved = [x * power for x in term]
+        sums = [a + b for a, b in zip(sums, moved, strict=True)]
+        if k >= count - LAST_TERMS:
+            last = [max(far, *(abs(x[j]).upper() for x in moved), key=_middle) for j, far in enumerate(last)]
+        power = power * step
+    for j, far in enumerate(last):
+        most = max((abs(x[j]).upper() for x in sums), key=_middle)
+        if not far.is_finite() or not far <= most * arb(2) ** -_taylor_bits():
             return None
         for i, x in enumerate(sums):
-            across[i, column] = x + acb(arb(0, last), arb(0, last))
+            across[i, j] = x[j] + acb(arb(0, far), arb(0, far))
     return across
+
+
+def _middle(x: arb) -> float:
+    return float(x.mid())
+
+
+def _taylor_bits() -> int:
+    """Return by how many bits the last terms of a step are smaller than the states: more with more bits."""
+    return max(LEAST_TAYLOR_BITS, current_bits() // 2)
