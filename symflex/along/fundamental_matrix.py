@@ -93,7 +93,8 @@ class PowerExpansion:
     def series(self, rows: Lines, columns: Lines, u: acb, terms: int = 1) -> list[acb]:
         """Return Taylor coefficients about ``u`` of a minor; of an entry, where there is one row."""
         coefficients, size = [], abs(u).upper()
-        with precision(self.precision):
+        # Most values are asked for with far fewer bits than the polynomials have.
+        with precision(self.precision - max(0, self.bits - current_bits())):
             cut = self._cut(rows, columns, size)
             # On the real axis arithmetic is a third of the work.
             at: Number = u.real if u.imag == 0 else u
@@ -235,8 +236,9 @@ class DiscPolynomial:
         middle = u.mid()
         radius = abs(u - middle).abs_upper()
         if not radius > abs(middle) * WIDE:
+            off = u - middle
             slopes: list[Number] = [self._derivative(k + 1)(u) * (k + 1) for k in range(terms)]
-            return [self._derivative(k)(middle) + slope * (u - middle) for k, slope in enumerate(slopes)]
+            return [self._derivative(k)(middle) + slope * off for k, slope in enumerate(slopes)]
         # Terms of an alternating series are larger than their sum: a ball is judged by its middle.
         far, count, known, moved = (abs(middle) + radius).abs_upper(), 0, list[Number](), arb(0)
         while True:

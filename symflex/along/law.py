@@ -2,7 +2,8 @@
 
 Input: a law over the ring of a bound transfer function, and what the ring's generators are.
 Output: a :class:`BoundLaw`: the coefficients of ``z' = A(x, s) z`` as power series in x, in powers of u,
-where u is s, its square, or s less the middle of a ball; and bounds on them.
+where u is s, its square, s less the middle of a ball, or ``s^2 + a s`` where what resists motion is ``a``
+times what is moved all along x; and bounds on them.
 
     a clamped beam that tapers, E I (1 - x)^3 and rho A (1 - x):
     order 0 in u = s^2:   y' = theta, theta' = tau/(E I (1 - x)^3), tau' = -f
@@ -141,6 +142,27 @@ class BoundLaw(PartedLaw):
     _growths: dict[int, float] = field(default_factory=dict, repr=False)  # at rest and about frequencies
 
     @cached_property
+    def drag(self) -> Factored | None:
+        """What a is in ``u = s^2 + a s``, where no other s occurs: two powers of s are then one of u."""
+        ratios = []
+        for parts in self.summands.values():
+            moving = {t.power: t for t in parts if t.power}
+            if moving and moving.keys() != {1, 2}:
+                return None
+            if moving:
+                ratios.append(moving[1].along / moving[2].along)
+        if not ratios or self.divisors or self.law.singular is not None:
+            return None
+        first, *others = ratios
+        is_alike = all((other - first).is_zero for other in others)
+        return None if not is_alike or any(map(first.depends_on, (COORDINATE, *self.functions))) else first
+
+    @cached_property
+    def degree(self) -> int:
+        """The degree of u in s."""
+        return self.step if self.drag is None else 2
+
+    @cached_property
     def beginning(self) -> tuple[tuple[int, ...], BoundLaw, BoundLaw] | None:
         """About a singular start: the powers, and as laws B and the values there."""
         own = self.law.singular
@@ -153,7 +175,7 @@ class BoundLaw(PartedLaw):
 
     def growth(self, largest: arb) -> float:
         """Return about by which power of e solutions grow along the member at most, for an abs(u)."""
-        return growth_along(_InPowers(self, self.step), largest)
+        return growth_along(_InPowers(self, self.degree), largest)
 
     def growth_at(self, octave: int, parts: int) -> float:
         """Return the same for ``abs(s) = 2^(octave/parts)``."""
@@ -169,6 +191,9 @@ class BoundLaw(PartedLaw):
 
     def rate(self, s: Value) -> Value:
         """Return u, of which A is a polynomial once states are scaled by their weights."""
+        if self.drag is not None:
+            square: Value = s * (s + self.value(self.drag, {}))
+            return square
         rate: Value = raised(s, self.step) * raised(self.divisor(s), -1)
         return rate
 
@@ -181,14 +206,14 @@ class BoundLaw(PartedLaw):
         """Return the fundamental matrix in powers of u, for abs(u) up to the largest; else SF250."""
         try:
             with precision(bits):
-                return expand(_InPowers(self, self.step), largest, bits)
+                return expand(_InPowers(self, self.degree), largest, bits)
         except SingularCoefficientError as error:
             raise self._singular(error) from None
 
     def check(self) -> None:
         """Raise ModelError: SF250 where a coefficient is not analytic on the whole member."""
         try:
-            legs_along(_InPowers(self, self.step), arb(TINY), arb(TINY), FEW_BITS)
+            legs_along(_InPowers(self, self.degree), arb(TINY), arb(TINY), FEW_BITS)
         except SingularCoefficientError as error:
             raise self._singular(error) from None
 
@@ -291,7 +316,8 @@ class BoundLaw(PartedLaw):
                 below = (polynomial(f) for f, e in factors for _ in range(-e))
                 return RationalPart(place, polynomial(above), tuple(below), rates(part))
 
-            return [parted(place, t) for place, own in self.summands.items() for t in own]
+            every = [parted(place, t) for place, own in self.summands.items() for t in own]
+        return [part for part in every if part.rates]
 
     def shifted(self, place: Place, coefficients: Sequence[arb], terms: int) -> arb_poly:
         """Return an entry's power series about the start, or anywhere where no power of the way is apart."""
@@ -323,7 +349,7 @@ class _InPowers:
     """A law in powers of u, that is s or its square, over a divisor where states are scaled by that."""
 
     law: BoundLaw
-    step: int  # of powers of s
+    step: int  # of powers of s; a part between two steps is in u by another one, see :attr:`BoundLaw.drag`
 
     @property
     def size(self) -> int:
@@ -344,7 +370,7 @@ class _InPowers:
         with series_terms(terms):
             along = self.law.along(arb_series([x, 1], terms))
             for place, parts in self.law.summands.items():
-                for t in parts:
+                for t in self._in_powers(parts):
                     order = t.power // self.step
                     coefficients += [{} for _ in range(order + 1 - len(coefficients))]
                     own = self.law.shifted(place, self.law.value(t.along, along).coeffs(), terms)
@@ -352,16 +378,26 @@ class _InPowers:
         return coefficients
 
     def parts(self, x: arb) -> list[RationalPart] | None:
-        step = self.law.step
-        return self.law.rational_parts(x, lambda t: ((t.power // step, arb(1)),))
+        return self.law.rational_parts(
+            x, lambda t: ((t.power // self.step, arb(1)),) if self._in_powers([t]) else ()
+        )
 
     def bounds(self, x: acb, largest: arb) -> dict[Place, arb]:
         along = self.law.along(x)
         return {
             place: self.law.far(place, x)
-            * sum((self.law.size(t.along, along) * largest ** (t.power // self.step) for t in parts), arb(0))
+            * sum(
+                (
+                    self.law.size(t.along, along) * largest ** (t.power // self.step)
+                    for t in self._in_powers(parts)
+                ),
+                arb(0),
+            )
             for place, parts in self.law.summands.items()
         }
+
+    def _in_powers(self, parts: Sequence[Summand]) -> list[Summand]:
+        return [t for t in parts if t.power % self.step == 0]
 
 
 @dataclass(frozen=True, eq=False)

@@ -125,8 +125,8 @@ class VaryingMatrices:
                 self._lowest[matrix] = self._lowest_octave(matrix)
             wanted = abs(at_centre(law.rate(acb(0, self._expected.get(0, 0.0))))).upper()
             if not size <= wanted:
-                wanted = (size * FURTHER ** (law.step * min(max(len(known), 1), FURTHEST))).upper()
-            largest = max(wanted, arb(2) ** (law.step * self._lowest[matrix]), *(r for r, _, _ in known))
+                wanted = (size * FURTHER ** (law.degree * min(max(len(known), 1), FURTHEST))).upper()
+            largest = max(wanted, arb(2) ** (law.degree * self._lowest[matrix]), *(r for r, _, _ in known))
             bits = max(FEWEST_BITS, ceil(current_bits() / BUCKET) * BUCKET, *(b for _, b, _ in known))
             fitting = [law.expanded(largest, bits)]
             known.append((largest, bits, fitting[0]))
@@ -144,7 +144,7 @@ class VaryingMatrices:
         low, high = -HIGHEST_OCTAVE, HIGHEST_OCTAVE
         while high - low > 1:
             middle = (low + high) // 2
-            grows = law.growth(arb(2) ** (law.step * middle)) > at_rest + LOW
+            grows = law.growth(arb(2) ** (law.degree * middle)) > at_rest + LOW
             low, high = (low, middle) if grows else (middle, high)
         return low
 

@@ -337,6 +337,8 @@ class KernelFunction:
                 if any(f == 0 for f, _, _ in factors):
                     return None
                 if all(f.rel_accuracy_bits() >= SETTLED_BITS and d.is_finite() for f, d, _ in factors):
+                    # Where terms cancel at one place they do at others; next to a root alone they do more.
+                    self._bits = max(self._bits, min(bits, 2 * FIRST_BITS))
                     return factors, s
         return None
 
