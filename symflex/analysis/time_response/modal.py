@@ -31,7 +31,6 @@ from symflex.analysis.time_response.sampled import PartialSum, Refused
 from symflex.balls import bits_for_digits, precision
 from symflex.errors import BudgetError, UncertifiedError
 from symflex.roots import Modes, Root
-from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import Cell, RootOnPathError
 from symflex.roots.degenerate import degenerate_points
 from symflex.roots.distributed.side import Side
@@ -214,9 +213,8 @@ class BoundedModes:
         chain = [root for root in begun if not root.im < 0 and not root.re > 0 and not root.is_zero]
         if not len(CONTINUATION) <= len(chain) <= count:
             return None
-        winding = CertifiedWinding(side.function)
         try:
-            within = winding.count_within(side.reached, pi)
+            within = side.winding.count_within(side.reached, pi)
             if self._begun != side.reached:
                 self._begun, self._added = side.reached, []
             added = self._added
@@ -233,7 +231,7 @@ class BoundedModes:
             ends = [float(root.natural_frequency().log().mid()) for root in added[-2:]]
             reached = sum(ends) / len(ends)
             between = sum(1 if root.is_real else 2 for root in added[:-1])
-            if winding.count_within(reached, pi) != within + between:
+            if side.winding.count_within(reached, pi) != within + between:
                 return None
         except RootOnPathError:
             return None

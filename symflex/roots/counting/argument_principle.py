@@ -78,9 +78,11 @@ class CertifiedWinding(Winding[E_co]):
     def count(self, cell: Cell) -> int:
         """Return the number of roots in a cell, with multiplicity: proved, or RootOnPathError."""
         smallest = max(SMALLEST, 1e-9 * cell.size)
+        # Sides are followed with more room than the last digit by which mirrored ones may be apart.
+        upper = cell.upper_edges if self.function.is_real else ()
         with precision(BITS):
-            total = sum((self.certified_turn(start, end, smallest) for start, end in cell.edges), arb(0))
-            return _whole(total / (2 * arb.pi()))
+            turns = (self.certified_turn(start, end, smallest) for start, end in upper or cell.edges)
+            return _whole(sum(turns, arb(0)) / (arb.pi() if upper else 2 * arb.pi()))
 
     def count_right(self, low: float, high: float, angle: float = pi / 2) -> int:
         """Return the number of roots on the right with ``low < ln(abs(s)) < high``: proved."""

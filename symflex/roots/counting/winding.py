@@ -77,6 +77,14 @@ class Cell:
         )
         return tuple((corners[i - 1], corners[i]) for i in range(4))
 
+    @property
+    def upper_edges(self) -> tuple[tuple[complex, complex], ...]:
+        """The sides above the real axis, where those below are their mirror images; none of other cells."""
+        if self.right + self.left == 0:
+            inner, _, outer, left = replace(self, right=0.0).edges
+            return inner, outer, left
+        return replace(self, left=pi).edges[:3] if self.right + self.left == 2 * pi else ()
+
     def holds(self, z: complex, margin: float = 0.0) -> bool:
         """Tell whether a point lies inside, or at most ``margin`` outside."""
         along = self.low - margin < z.real < self.high + margin
@@ -213,6 +221,8 @@ def continuous_step(start: Sample, end: Sample, step: complex) -> float | None:
 
 GOAL = 1.15  # deviation that the next step aims at
 GROWTH = 1.5  # most that one step may be longer than the last, or shorter
+LITTLE = 0.01  # deviation so small that other bounds hold here than where a step was too long
+LEAP = 4.0  # growth of a step after one that deviated so little
 SHRINKING = 0.5  # least that is tried of a step that was too long
 NEARER = 0.5  # share of a step that was too long to try next: deviations grow exponentially
 FORGETTING = 1.1  # growth of that bound with every step
@@ -236,7 +246,7 @@ def total_turn(change: Callable[[float, float], tuple[float, arb]], first: float
                 raise RootOnPathError
             continue
         total += turn
-        longest *= FORGETTING
-        step = min((end - t) * max(1 / GROWTH, min(GROWTH, GOAL / max(off, 0.1))), NEARER * longest)
+        longest, growth = (inf, LEAP) if off < LITTLE else (longest * FORGETTING, GROWTH)
+        step = min((end - t) * max(1 / GROWTH, min(growth, GOAL / max(off, 0.1))), NEARER * longest)
         t = end
     return total

@@ -82,11 +82,11 @@ class Side:
             # Kernels may have poles where polynomials vanish: only together are they entire.
             self.function = KernelFunction(*without_squares(bound, _without_laplace(plain) * mixed))
             require_lowest(bound)
-            self._winding = CertifiedWinding(self.function)
+            self.winding = CertifiedWinding(self.function)
             self._origin, self._order = roots_at_zero(
-                self._winding, part, self._left, self.holes, is_hidden=is_hidden
+                self.winding, part, self._left, self.holes, is_hidden=is_hidden
             )
-            self._sought = Sought(self.function, self._winding, self._order, self.holes, digits)
+            self._sought = Sought(self.function, self.winding, self._order, self.holes, digits)
             self._attempts = ((e, search) for e in self._engines for search in SEARCHES[e](self._sought))
             self._next_search()
             if self.is_finite:
@@ -170,7 +170,7 @@ class Side:
             self.extend(region.count)
             return
         low, high, right, left = limits(region, is_even=self._search.is_even)
-        smallest = self._winding.smallest(self._left, self.holes)
+        smallest = self.winding.smallest(self._left, self.holes)
         # Within the smallest disc none is sought; that there are none is counted.
         self._innermost = smallest if low < smallest else None
         low, high = max(low, smallest), max(self._search.passing(high), smallest + WIDER)
@@ -244,7 +244,7 @@ class Side:
     def _subdivide(self, region: Region) -> None:
         """Search again, every count proved."""
         reached, modes = self.reached, self.modes
-        self.engine, self._search = SUBDIVISION, self._sought.search(self._winding)
+        self.engine, self._search = SUBDIVISION, self._sought.search(self.winding)
         if isinstance(region, Modes):
             self.extend(modes, reached)
         else:
@@ -325,7 +325,7 @@ class Side:
 
     @property
     def _count(self) -> Count:
-        return Count(self._winding, self._order, self.holes, self._left, self._lossless)
+        return Count(self.winding, self._order, self.holes, self._left, self._lossless)
 
     def count_right(self, high: float) -> int:
         """Return how many roots lie in the right half-plane, with ln(abs(s)) below ``high``: proved.

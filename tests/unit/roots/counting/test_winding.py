@@ -13,7 +13,7 @@ from flint import acb, arb
 from symflex.balls import precision
 from symflex.roots.counting.argument_principle import CertifiedWinding, LogarithmicLine, _whole
 from symflex.roots.counting.local_series import BLURRED, LocalSeries, SeriesSteps, _followed
-from symflex.roots.counting.winding import Cell, RootOnPathError, Winding
+from symflex.roots.counting.winding import Cell, RootOnPathError, Winding, total_turn
 from symflex.roots.functions.entire import Sample
 from symflex.roots.functions.kernel_function import ROOM, angle
 from tests.unit.roots.known_functions import KnownFunction
@@ -120,6 +120,25 @@ def test_a_cell_holds_as_many_roots_as_were_put_there():
             assert any(
                 complex(r).real < 0 == complex(r).imag for roots, _ in function.roots for r in roots
             ), (power, cell, name, kind)
+
+
+def test_a_cell_about_the_negative_axis_is_counted_by_its_upper_half():
+    cell = Cell(0.5, 2.0, pi - 0.5, pi + 0.5)
+    assert len(cell.upper_edges) == 3
+    assert CertifiedWinding(Followed(PRODUCTS["double"])).count(cell) == 4
+    assert CertifiedWinding(Followed(PRODUCTS["at zero"])).count(cell) == 3
+    assert not Cell(0.5, 2.0, pi - 0.5, pi + 0.4).upper_edges
+
+
+def test_steps_leap_where_another_bound_makes_them_small_no_longer():
+    calls = []
+
+    def change(start, end):
+        calls.append(start)
+        return (5.0 if start == 0 and end > 1e-4 else 1e-3), arb(end - start)
+
+    assert total_turn(change, 1.0, 1e-9).contains(1)
+    assert len(calls) < 30
 
 
 def test_a_disc_about_0_holds_as_many_roots_as_were_put_there():
