@@ -459,7 +459,7 @@ def _said_of_lines(fit: ResonanceFit) -> list[str]:
     return warnings
 
 
-def _said_of_units(fit: ResonanceFit) -> list[str]:
+def said_of_units(fit: ResonanceFit) -> list[str]:
     """Return where data and base are not known to have one unit."""
     said = []
     for measured, base in zip(fit.measured, fit.bases, strict=True):
@@ -480,7 +480,7 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
     errors = fit.standard_errors()
     low, high = fit.problem.band
     is_exact = fit.leaves_rounding
-    warnings = [*_said_of_lines(fit), *_said_of_units(fit)]
+    warnings = [*_said_of_lines(fit), *said_of_units(fit)]
     if fit.candidate.is_rivalled and high <= NARROW_BAND * low:
         width = f"{200 * (high - low) / (high + low):.2g} % wide"
         other = "another one fits as well, with another gain and other zeros"

@@ -23,13 +23,25 @@ from typing import Final
 
 import numpy as np
 import numpy.typing as npt
-from scipy.special import stdtrit
+from scipy.signal import fftconvolve, lfilter
+from scipy.special import chdtrc, stdtrit
 
 from symflex.budget import entered_budget, spend
-from symflex.data.fitting.fit import FEWEST_LINES, LARGE, MOST_LINES, ROUNDS, SMOOTH, WILD, Base, ResonanceFit
+from symflex.data.fitting.fit import (
+    FEWEST_LINES,
+    LARGE,
+    MOST_LINES,
+    ROUNDS,
+    SMOOTH,
+    WILD,
+    Base,
+    ResonanceFit,
+    said_of_units,
+)
 from symflex.data.fitting.identifiable import Coefficients, Identifiability
 from symflex.data.fitting.least_squares import (
     Refined,
+    Sums,
     correlation_of,
     sandwich,
     search,
@@ -42,9 +54,12 @@ from symflex.data.fitting.noise import estimated, with_noise, with_rough_noise
 from symflex.data.fitting.observation import FittedLines
 from symflex.data.fitting.order import UNLIKELY, Candidate, lack_of_fit
 from symflex.data.fitting.problem import FitProblem, fit_problem
+from symflex.data.fitting.pulse_response import PulseResponse, of_coefficients, of_function, terms_for
 from symflex.data.fitting.resonances import Complex, Free, Real, Resonances, Values
+from symflex.data.fitting.sampled_record import autoregression, is_held
 from symflex.data.fitting.starts import poles_from_vector_fitting
 from symflex.data.measurement import MeasuredResponse
+from symflex.data.measurement.measured_response import Samples
 from symflex.errors import DataError, Diagnostic, FitError, counted, no_such, refused
 from symflex.model import ModelParameter
 from symflex.quantities import unit_of
@@ -72,6 +87,9 @@ CONTRADICTED = 3.3  # standard deviations off what a spread says that noise exce
 NAMED_TWINS = 4
 UNMOVED = 1e-6  # share of a definition's slope along an undetermined direction below which it does not move
 NO_FREE = Free()
+OTHER_SIGN: Final = "with the other sign the data agree far better with the specification"
+COLOURED: Final = 2  # rounds in which the noise of records is coloured anew
+MOST_LAGS: Final = 40  # lags of the correlation between what is left of a record and its input
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,6 +203,9 @@ class ParameterFit:
     starts: tuple[int, int]  # how many led to this minimum, and how many were tried
     warnings: tuple[str, ...] = ()
     poor: tuple[str, ...] = ()
+    in_time: tuple[
+        str, ...
+    ] = ()  # how each response was fitted to its records, in words; empty if it was not
 
     def __repr__(self) -> str:
         return f"<ParameterFit: {', '.join(self.machine.names)} of {self.machine.path}>"
@@ -350,9 +371,16 @@ def _real(values: Values) -> Real:
 
 
 def fit_parameters(measured: Sequence[MeasuredResponse], machine: Machine) -> ParameterFit:
-    """Fit the free parameters of a machine to a response for each of its functions."""
+    """Fit the free parameters of a machine to a response for each of its functions, or to records in time."""
     measured = [_in_unit(one, function) for one, function in zip(measured, machine.functions, strict=True)]
     rank = machine.identifiability.rank
+    found = _fit_responses(measured, machine, rank)
+    are_records = all(one.samples and all(same.input is not None for same in one.samples) for one in measured)
+    return _fit_records(measured, found) if are_records else found
+
+
+def _fit_responses(measured: Sequence[MeasuredResponse], machine: Machine, rank: int) -> ParameterFit:
+    """Fit the free parameters to frequency responses."""
     needed = max(FEWEST_LINES, rank + 2)
     for one in measured:
         if one.values.size < needed:
@@ -400,7 +428,7 @@ def fit_parameters(measured: Sequence[MeasuredResponse], machine: Machine) -> Pa
     found = ParameterFit(machine, shown, theta, covariance, directions, freedom, twins, are_exact, starts)
     poor = _poor(found, likelihood)
     if poor and _is_negated(thin, machine, x):
-        poor = ("with the other sign the data agree far better with the specification", *poor)
+        poor = (OTHER_SIGN, *poor)
     return replace(found, poor=poor, warnings=_warnings(found))
 
 
@@ -415,7 +443,8 @@ def _in_unit(measured: MeasuredResponse, function: MachineFunction) -> MeasuredR
     factor = float(given.scale / wanted.scale) * np.pi ** (given.pi_power - wanted.pi_power)
     if factor == 1:
         return measured
-    return replace(measured, values=measured.values * factor, unit=function.unit)
+    samples = tuple(replace(one, output=one.output * factor) for one in measured.samples)
+    return replace(measured, values=measured.values * factor, unit=function.unit, samples=samples)
 
 
 def _problem(measured: Sequence[MeasuredResponse], machine: Machine, theta: Real) -> FitProblem:
@@ -674,6 +703,249 @@ def _twins(problem: FitProblem, machine: Machine, x: Real) -> tuple[list[Real], 
     return found, is_exact
 
 
+@dataclass(frozen=True, eq=False)
+class _Record:
+    """Samples of an output of a machine, and what is assumed of them."""
+
+    response: int  # number of the function
+    samples: Samples
+    is_joined: bool  # whether lines join the samples of the input; else each is held to the next
+    begins: str  # a key of BEGINNINGS
+    whitening: Real  # coefficients of the regression that whitens the noise
+    deviation: float  # of what that leaves
+
+    @property
+    def kept(self) -> npt.NDArray[np.bool_]:
+        """Which samples count."""
+        kept = np.ones(self.samples.output.size, bool)
+        kept[: self.whitening.size - 1] = False
+        return kept if self.samples.is_missing is None else kept & ~self.samples.is_missing
+
+    def whitened(self, values: Real) -> Real:
+        """Return what samples leave after the regression, over its deviation; shape (n, ...) to (k, ...)."""
+        return np.asarray(
+            lfilter(self.whitening, 1.0, values, axis=0)[self.kept] / self.deviation, np.float64
+        )
+
+    def disturbance(self, pulse: PulseResponse) -> Real:
+        """Return the columns of an offset, and of a state to begin with if that is open."""
+        offset = np.ones((self.samples.output.size, 1))
+        free = pulse.free if self.begins == "free" else pulse.free[:, :0]
+        scale = np.maximum(np.abs(free).max(axis=0, initial=0.0), np.finfo(float).tiny)
+        return np.concatenate((offset, free / scale), axis=1)
+
+
+BEGINNINGS: Final = {
+    "rest": "it begins at rest, with the input at zero before",
+    "level": "it begins at rest, with the input as on the first sample",
+    "free": "the state that it begins with is fitted",
+}
+
+
+class _RecordRest(_MachineRest):
+    """Residuals of records in time, without what an offset and a state to begin with explain."""
+
+    def __init__(self, machine: Machine, records: Sequence[_Record]) -> None:
+        self.machine, self.records = machine, records
+        self.prior = 1 / machine.priors
+        self._last = (b"", [], [])
+        self._finer: dict[int, int] = {}
+
+    def pulse(self, record: _Record, theta: Real) -> PulseResponse:
+        """Return the response to one sample of an input; FitError SF619 for a function that has none."""
+        machine, samples = self.machine, record.samples
+        function, count = machine.functions[record.response], samples.output.size
+        if function.coefficients is not None:
+            made = of_coefficients(
+                function.coefficients, theta, samples.step_s, count, is_joined=record.is_joined
+            )
+        else:
+
+            def response(finer: int) -> PulseResponse | None:
+                return of_function(
+                    lambda s: machine.at(record.response, -1j * s, theta),
+                    samples.step_s,
+                    count,
+                    finer,
+                    is_joined=record.is_joined,
+                )
+
+            if record.response not in self._finer:
+                self._finer[record.response] = terms_for(response, count)
+            made = response(self._finer[record.response])
+        if made is None:
+            message = f"{function.name} does not fall towards high frequencies: it has no response in time"
+            raise FitError(Diagnostic("SF619", message, None, "fit its frequency response: --segments 8"))
+        return made
+
+    def model(self, record: _Record, theta: Real) -> tuple[Real, Real, Real]:
+        """Return output and derivatives by parameters, and the columns of disturbances; not whitened."""
+        pulse, u = self.pulse(record, theta), record.samples.input
+        assert u is not None  # only driven records are fitted
+        driven = u - u[0] if record.begins == "level" else u
+        both = np.column_stack((pulse.values, pulse.slopes))
+        output = fftconvolve(driven[:, np.newaxis], both, axes=0)[: driven.size]
+        return output[:, 0], output[:, 1:], record.disturbance(pulse)
+
+    def left(self, record: _Record, theta: Real) -> Real:
+        """Return what the model and the best disturbances leave of the samples; not whitened."""
+        output, _, columns = self.model(record, theta)
+        rest = record.samples.output - output
+        solved = np.linalg.lstsq(record.whitened(columns), record.whitened(rest), rcond=None)[0]
+        return np.asarray(rest - columns @ solved, np.float64)
+
+    def _at(self, x: Real) -> tuple[list[Values], list[Values]]:
+        if self._last[0] == x.tobytes():
+            return self._last[1:]
+        theta = self.machine.theta(x)
+        scales = self.machine.scales(theta)
+        residuals: list[Values] = []
+        slopes: list[Values] = []
+        with np.errstate(all="ignore"):
+            for record in self.records:
+                output, by_parameters, columns = self.model(record, theta)
+                rest = record.whitened(output - record.samples.output)
+                steps = record.whitened(by_parameters * scales)
+                before = record.whitened(columns)
+                if all(np.isfinite(one).all() for one in (rest, steps, before)):
+                    basis = np.linalg.qr(before)[0]
+                    rest, steps = (one - basis @ (basis.T @ one) for one in (rest, steps))
+                else:  # an unstable response has grown beyond all numbers
+                    rest, steps = np.full_like(rest, np.nan), np.zeros_like(steps)
+                residuals.append(_finite(rest, 1e9))
+                slopes.append(_finite(steps, 0.0))
+            residuals.append(self.prior * (theta - self.machine.start))
+            slopes.append(np.diag(self.prior * scales))
+        self._last = x.tobytes(), residuals, slopes
+        return residuals, slopes
+
+
+def _fit_records(measured: Sequence[MeasuredResponse], begun: ParameterFit) -> ParameterFit:
+    """Fit the free parameters to records in time, from what their frequency responses gave."""
+    machine = begun.machine
+    starts = [machine.point(begun.theta), np.zeros(len(machine.names))]
+    chosen: tuple[float, Real, list[_Record]] | None = None
+    for holds in _holds(measured):
+        for begins in BEGINNINGS:
+            records = [
+                _Record(r, same, holds, begins, np.ones(1), float(np.std(same.output)) or 1.0)
+                for r, one in enumerate(measured)
+                for same in one.samples
+            ]
+            rest = _RecordRest(machine, records)
+            low, high = machine.limits
+            points = [rest.descend(np.clip(start, low, high), ROUGH_STEPS, ROUGH) for start in starts]
+            x = min(points, key=rest.cost)
+            terms = sum(
+                record.disturbance(rest.pulse(record, machine.theta(x))).shape[1] for record in records
+            )
+            count = sum(record.kept.sum() for record in records)
+            score = count * np.log(max(rest.cost(x), np.finfo(float).tiny) / count) + terms * np.log(count)
+            if chosen is None or score < chosen[0]:
+                chosen = score, x, records
+    assert chosen is not None  # there are beginnings
+    _, x, records = chosen
+    if all(function.coefficients is not None for function in machine.functions):
+        x = _best_of_random(_RecordRest(machine, records), x, starts)
+    for _ in range(COLOURED):
+        rest = _RecordRest(machine, records)
+        left = [rest.left(record, machine.theta(x)) for record in records]
+        records = [_coloured(record, values) for record, values in zip(records, left, strict=True)]
+        x = _RecordRest(machine, records).descend(x)
+    return _in_time(measured, begun, records, x)
+
+
+def _best_of_random(rest: _RecordRest, x: Real, starts: Sequence[Real]) -> Real:
+    """Return the best of a point and of those that random starts lead to."""
+    source, found = np.random.default_rng(3), [(rest.cost(x), x)]
+    for i in range(RANDOM_STARTS):
+        start = starts[i % len(starts)] + source.uniform(-REACH, REACH, x.size) * (1 + i // 2)
+        low, high = rest.machine.limits
+        other = rest.descend(np.clip(start, low, high), ROUGH_STEPS, ROUGH)
+        found.append((rest.cost(other), other))
+    return min(found, key=lambda one: one[0])[1]
+
+
+def _holds(measured: Sequence[MeasuredResponse]) -> tuple[bool, ...]:
+    """Return whether lines may join the samples of the inputs: not where these show that they are held."""
+    inputs = [same.input for one in measured for same in one.samples if same.input is not None]
+    return (False,) if all(map(is_held, inputs)) else (False, True)
+
+
+def _coloured(record: _Record, left: Real) -> _Record:
+    """Return a record with the noise that its residual shows."""
+    if record.samples.is_missing is not None:
+        return replace(record, deviation=float(np.std(left[record.kept])) or 1.0)
+    whitening, variance = autoregression(left)
+    return replace(record, whitening=whitening, deviation=float(np.sqrt(variance)))
+
+
+def _in_time(
+    measured: Sequence[MeasuredResponse], begun: ParameterFit, records: Sequence[_Record], x: Real
+) -> ParameterFit:
+    """Return a fit to records at its minimum, with its errors and its report."""
+    machine, rank = begun.machine, begun.machine.identifiability.rank
+    problem = begun.residual.problem
+    points, are_exact = _twins(problem, machine, x) if begun.are_exact_twins else ([x], True)
+    x, *others = sorted(points, key=lambda point: float(np.linalg.norm(point)))
+    theta = machine.theta(x)
+    rest = _RecordRest(machine, records)
+    residuals, slopes = rest.residual(x), rest.slopes(x)
+    stacked = np.concatenate([_real(one) for one in residuals[:-1]])
+    sums = Sums(len(machine.names), stacked.size, float(stacked @ stacked))
+    for one in slopes[:-1]:
+        sums.add(np.arange(len(machine.names)), one, None, 0)
+    prior = np.asarray(slopes[-1], np.float64)
+    covariance, directions = sandwich(sums, [], prior.T @ prior, rank)
+    scales = machine.scales(theta)
+    directions[-1] *= scales
+    problem = _with_base(problem, machine, theta)
+    shown = _shown(problem, machine, _refined(problem, machine, x), theta)
+    words, poor, warnings = [], [], []
+    for record in records:
+        left, output = rest.left(record, theta), record.samples.output
+        share = float(np.std(left) / np.std(output)) if np.std(output) else 0.0
+        held = "joined by lines" if record.is_joined else "held between samples"
+        noise = "white noise" if record.whitening.size == 1 else f"noise of order {record.whitening.size - 1}"
+        words.append(
+            f"in time: {output.size} samples, {record.samples.step_s:.6g} s apart; the input is {held}; "
+            f"{BEGINNINGS[record.begins]}; residual {100 * share:.3g} % rms, {noise}"
+        )
+        name = measured[record.response].name
+        if _follows(record, record.whitened(left), rank):
+            poor.append(f"what is left of {name} follows the input: the specification lacks something")
+        if (error := rest.pulse(record, theta).error) > SAME:
+            warnings.append(f"the response of {name} in time is computed to {100 * error:.1g} % only")
+    found = replace(
+        begun,
+        residual=shown,
+        theta=theta,
+        covariance=covariance * np.outer(scales, scales),
+        directions=directions,
+        freedom=stacked.size - rank,
+        twins=tuple(map(machine.theta, others[:NAMED_TWINS])),
+        are_exact_twins=are_exact,
+        in_time=tuple(words),
+    )
+    kept = [reason for reason in begun.poor if reason == OTHER_SIGN]
+    poor += _contradicted(found)
+    return replace(found, poor=(*kept, *poor), warnings=(*warnings, *_warnings(found)))
+
+
+def _follows(record: _Record, left: Real, rank: int) -> bool:
+    """Return whether what a model leaves correlates with the input (Ljung 1999, section 16.6)."""
+    u = record.samples.input
+    assert u is not None  # only driven records are fitted
+    source, variance = autoregression(u - u.mean())
+    driving = lfilter(source, 1.0, u - u.mean())[record.kept] / np.sqrt(variance)
+    lags = min(MOST_LAGS, left.size // 8)
+    size = np.std(left) * np.std(driving) * np.sqrt(left.size)
+    if not size > 0:
+        return False
+    shares = [float(left[lag:] @ driving[: left.size - lag]) / size for lag in range(lags)]
+    return float(chdtrc(max(lags - rank, 1), float(np.sum(np.square(shares))))) < UNLIKELY
+
+
 def _is_negated(thin: FitProblem, machine: Machine, x: Real) -> bool:
     """Return whether data of the other sign leave a tenth of the residual, or less."""
     lines = [
@@ -695,20 +967,26 @@ def _poor(fit: ParameterFit, likelihood: float) -> tuple[str, ...]:
         reasons.append("a function with more poles describes the data far better than noise explains")
     if refined.correlation > SMOOTH and not shown.leaves_rounding:
         reasons.append("neighbouring lines deviate together: the specification lacks something")
+    return (*reasons, *_contradicted(fit))
+
+
+def _contradicted(fit: ParameterFit) -> list[str]:
+    """Return which spreads the data contradict."""
+    reasons = []
     for p, value, prior in zip(fit.machine.parameters, fit.theta, fit.machine.priors, strict=True):
         off = abs(value - fit.machine.values[p.name]) / prior
         if off > CONTRADICTED:
             reasons.append(f"{p.name} is {off:.2g} standard deviations from what its spread says")
-    return tuple(reasons)
+    return reasons
 
 
 def _warnings(fit: ParameterFit) -> tuple[str, ...]:
     """Return what to be careful about."""
-    said = []
     low, high = (end / (2 * np.pi) for end in fit.residual.problem.band)
+    said = said_of_units(fit.residual)
     for r in range(len(fit.residual.measured)):
         excluded = fit.residual.left_out(r)
-        if excluded.size:
+        if excluded.size and not fit.in_time:
             places = ", ".join(f"{f:.6g}" for f in fit.residual.measured[r].frequency_hz[excluded][:6])
             said.append(
                 f"{counted(excluded.size, 'outlier')}{fit.residual.of_response(r)} left out, at {places} Hz"

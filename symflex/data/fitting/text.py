@@ -19,7 +19,6 @@ from symflex.print.text import INDENT, Passage
 SCHEMA: Final = "symflex.fit/1"
 PARAMETERS_SCHEMA: Final = "symflex.fit_parameters/1"
 ERROR_DIGITS: Final = 2
-MOST_DIGITS: Final = 12  # digits of a parameter that are printed at most
 MOST_FIXES: Final = 8  # sets of parameters to fix that are listed
 STARTS: Final = {
     "peaks": "peaks and troughs of the magnitude, the paper's procedure",
@@ -74,7 +73,7 @@ def parameter_passages(fit: ParameterFit) -> Iterator[Passage]:
         if measured.is_synthetic:
             lines.append(f"{INDENT}the data are SYNTHETIC: computed from a model, not measured")
         lines.append(INDENT + _data_line(shown, r))
-    yield Passage(lines)
+    yield Passage([*lines, *(INDENT + said for said in fit.in_time)])
     yield from _identifiability(fit)
     rows = [("", "value", "std. error", "95 % interval", "", "")]
     table = zip(machine.parameters, fit.theta, fit.errors, fit.intervals(), strict=True)
@@ -84,12 +83,17 @@ def parameter_passages(fit: ParameterFit) -> Iterator[Passage]:
         if not isfinite(error):
             rows.append((p.name, "undetermined", "", "", unit, prior))
             continue
-        numbers = (_figures(value / scale, error / scale), f"{error / scale:#.2g}")
-        interval = " to ".join(_figures(end / scale, error / scale) for end in ends)
+        numbers = (significant(value / scale, error / scale), f"{error / scale:#.2g}")
+        interval = " to ".join(significant(end / scale, error / scale) for end in ends)
         rows.append((p.name, *numbers, interval, unit, prior))
     yield Passage([f"{INDENT}parameters"], rows)
     derived = [
-        (one.name, _figures(value, error), f"{error:#.2g}" if isfinite(error) else "undetermined", one.unit)
+        (
+            one.name,
+            significant(value, error),
+            f"{error:#.2g}" if isfinite(error) else "undetermined",
+            one.unit,
+        )
         for one, value, error in fit.definitions()
     ]
     if derived:
@@ -102,7 +106,8 @@ def parameter_passages(fit: ParameterFit) -> Iterator[Passage]:
     ]
     same, tried = fit.starts
     begun = f"{same} of {counted(tried, 'start')} led to these values"
-    yield Passage([*residuals, INDENT + _accuracy(shown), INDENT + begun])
+    errors = "standard errors are those of the fit in time" if fit.in_time else _accuracy(shown)
+    yield Passage([*residuals, INDENT + errors, INDENT + begun])
     said = [f"{INDENT}warning: {one}" for one in fit.warnings]
     if said:
         yield Passage(said)
@@ -121,7 +126,9 @@ def _identifiability(fit: ParameterFit) -> Iterator[Passage]:
         if known.fixes:
             lines.append(f"{INDENT}fix, or give a spread to, {_fixes(known)}")
         rows = [("", "value", "std. error")]
-        rows += [(name, _figures(value, error), f"{error:#.2g}") for name, value, error in fit.combinations()]
+        rows += [
+            (name, significant(value, error), f"{error:#.2g}") for name, value, error in fit.combinations()
+        ]
         yield Passage(lines, rows if len(rows) > 1 else ())
     names = machine.names
     for twin in fit.twins:
@@ -160,18 +167,6 @@ def _spread_text(parameter: ModelParameter) -> str:
     assert spread is not None  # asked for where there is one
     scale, unit = _written_scale(parameter)
     return f"{float(spread.nearly) / scale:.3g} {unit}".rstrip()
-
-
-def _figures(value: float, error: float) -> str:
-    """Return a number with as many digits as its error has two of.
-
-    >>> _figures(0.00012345678, 2.1e-7), _figures(70123.4, 150.0), _figures(3.0, float("inf"))
-    ('0.00012346', '7.012e+04', '3')
-    """
-    if not (isfinite(value) and isfinite(error)) or error <= 0 or value == 0:
-        return f"{value:.6g}"
-    digits = floor(log10(abs(value))) - floor(log10(error)) + ERROR_DIGITS
-    return f"{value:#.{min(max(digits, ERROR_DIGITS), MOST_DIGITS)}g}".rstrip(".")
 
 
 def parameters_json(fit: ParameterFit) -> dict[str, object]:
@@ -231,6 +226,7 @@ def parameters_json(fit: ParameterFit) -> dict[str, object]:
             "in_units_of_coherence_noise": _is_scaled(shown),
             "line_correlation": shown.refined.correlation,
         },
+        "in_time": list(fit.in_time),
         "warnings": list(fit.warnings),
     }
 
