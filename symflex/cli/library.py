@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import click
 
 from symflex.cli.reporting import emit_json, reporting, say, terminal_width, write
-from symflex.errors import Diagnostic, SpecError, Text, UsageError, no_such, refused
+from symflex.errors import Diagnostic, SpecError, SymflexError, Text, UsageError, no_such, refused
 
 if TYPE_CHECKING:
     from symflex.library.blocks import Block
@@ -41,8 +41,9 @@ TEMPLATES: dict[str, str] = {
 @click.option(
     "--from",
     "netlist",
-    metavar="NETLIST",
-    help="A SPICE netlist (.cir, .net, .sp) to write as a specification.",
+    metavar="FILE",
+    help="A SPICE netlist (.cir, .net, .sp), or a paper with equations of motion (.tex), to write as a "
+    "specification.",
 )
 @click.option("-o", "--output", type=click.Path(), help="File to write.  [default: standard output]")
 @reporting
@@ -54,8 +55,11 @@ def new(template: str | None, *, output: str | None, is_list: bool, netlist: str
     if netlist is not None:
         from symflex.model.spec.read import NETLISTS, read  # imports the packages of models
 
+        if netlist.lower().endswith(".tex"):
+            _write_new(_of_paper(Path(netlist)), output)
+            return 0
         if not netlist.lower().endswith(NETLISTS):
-            hint = f"the name of a netlist ends in {', '.join(NETLISTS)}"
+            hint = f"the name of a netlist ends in {', '.join(NETLISTS)}, that of a paper in .tex"
             raise refused(f"'{netlist}' is not a netlist by its name", hint)
         _write_new(read(netlist).text, output)
         return 0
@@ -69,6 +73,21 @@ def new(template: str | None, *, output: str | None, is_list: bool, netlist: str
     text = (files("symflex") / "templates" / f"{template}.toml").read_text(encoding="utf-8")
     _write_new(text if output is None else text.replace(f"{template}.toml", Path(output).name), output)
     return 0
+
+
+def _of_paper(path: Path) -> str:
+    """Return the equations of motion in a paper as a specification; what is wrong with it is a gap, too."""
+    from symflex import pipeline
+    from symflex.papers.motion import motion_specification
+    from symflex.papers.source import read_paper
+
+    text = motion_specification(read_paper(path), path.name)
+    try:
+        pipeline.loads(text, "model.toml")
+    except SymflexError as error:
+        gaps = "".join(f"# GAP: {d.message}\n" for d in error.diagnostics)
+        return gaps + text
+    return text
 
 
 def _write_new(text: str, output: str | None) -> None:

@@ -17,7 +17,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import Final, NamedTuple, NoReturn
+from typing import Final, Literal, NamedTuple, NoReturn
 from zlib import crc32
 
 from symflex.errors import Span, SpecError, Text
@@ -25,6 +25,8 @@ from symflex.expressions import (
     FUNCTIONS,
     RECIPROCALS,
     Call,
+    Derivative,
+    Differentiated,
     Expression,
     Name,
     Negative,
@@ -41,8 +43,10 @@ from symflex.expressions import (
     nodes,
     number,
     parse,
+    product_of,
     substitute,
     sum_of,
+    with_children,
 )
 from symflex.papers.labels import ACCENTS, GREEK
 from symflex.papers.source import (
@@ -96,6 +100,24 @@ UNREAD: Final = {  # what begins no formula that could be judged, and what to do
     r"\lg": (r"\lg is a decimal logarithm", r"write \ln"),
     r"\th": (r"\th is not read", r"write \tanh"),
 }
+ARGUMENTS: Final = frozenset(  # what a function of time or frequency is written as a function of
+    (
+        "s",
+        "p",
+        "D",
+        "z",
+        "t",
+        "x",
+        "x,t",
+        "x,s",
+        "s,t",
+        r"\omega",
+        r"j\omega",
+        r"i\omega",
+        r"\imath\omega",
+        r"\jmath\omega",
+    )
+)
 PARTS: Final = frozenset("Re Im arg sgn sign min max det diag rank tr span".split())
 SPOKEN: Final = {f.lstrip("\\"): g for f, g in CALLS.items()}  # functions by their names, as \mathrm{sinh}
 ELLIPSES: Final = frozenset(rf"\{s}" for s in "ldots cdots dots dotsb dotsc dotsm dotsi vdots ddots".split())
@@ -135,7 +157,8 @@ class PaperNotation:
     signals: frozenset[str] = frozenset()  # those of them that vary: outputs, inputs, unknowns
     # Whether an expression has no unit; ``None`` where that is not known.
     is_number: Callable[[Expression], bool | None] = lambda _: None
-    moves: bool = False  # dots are derivatives in time, as in equations of motion
+    # What dots and primes mean: nothing, derivatives in time, or derivatives in time and along x.
+    motion: Literal["", "time", "field"] = ""
 
     def with_names(self, more: Mapping[PrintedSymbol, str]) -> PaperNotation:
         """Return the notation with further symbols, which hide others."""
@@ -314,7 +337,7 @@ def _check_limits(value: Value, tokens: Sequence[LatexToken]) -> None:
     """Refuse a tree that the text reader would refuse for its size."""
     for entry in (value,) if isinstance(value, Expression) else (e for row in value.rows for e in row):
         try:
-            parse(Text.alone("formula", format_expression(entry)))
+            parse(Text.alone("formula", format_expression(entry)), brackets=True)
         except SpecError as error:
             placed = (replace(d, span=tokens[0].span) for d in error.diagnostics)
             raise SpecError(*placed) from None
@@ -334,12 +357,21 @@ def _agree(a: Value, b: Value, notation: PaperNotation) -> bool:
         return all(_agree(x, y, notation) for x, y in pairs)
     for seed in ("a", "b"):
         try:
-            x, y = evaluated(a, seed), evaluated(b, seed)
+            x, y = evaluated(_at_rest(a), seed), evaluated(_at_rest(b), seed)
         except (ArithmeticError, ValueError, TypeError):
             return False
         if abs(x - y) > 1e-9 * (abs(x) + abs(y)):
             return False
     return True
+
+
+def _at_rest(node: Expression) -> Expression:
+    """Return an expression with derivatives and values at points as names of their own."""
+    if isinstance(node, Derivative) or (isinstance(node, Call) and node.name not in FUNCTIONS):
+        return Name(format_expression(node))
+    if isinstance(node, Differentiated):
+        return Product((Name("derivative"), _at_rest(node.operand)))
+    return with_children(node, [_at_rest(child) for child in node.children]) if node.children else node
 
 
 def evaluated(expression: Expression, seed: str = "") -> complex:
@@ -420,7 +452,7 @@ class _LatexReader:
             if not (word in LETTERS or (word.isascii() and word.isalpha() and len(word) == 1)):
                 break
             count += 1
-        symbol, self.at, _ = self.one_symbol(count)
+        symbol, self.at, *_ = self.one_symbol(count)
         return symbol
 
     # -- sums and products --
@@ -633,6 +665,9 @@ class _LatexReader:
                 if self.starts():
                     return self.atom()
                 self.refuse("an empty group is not read", at=start)
+            after = self.tokens[min(group_end(self.tokens, start), len(self.tokens) - 1)].text
+            if after == "_" or after in PRIMES:  # {\omega}_c
+                return self.symbol(alone=alone), False
             return self.group(), True
         if text in DELIMITERS:
             return self.bracket(), True
@@ -903,16 +938,13 @@ class _LatexReader:
         if self.text == "e" and self.ahead() == "^" and self.is_base():
             return self.exponential(start, 1)
         runs = [self.one_symbol(1)] if alone else self.cut()
-        symbol, end, dots = runs[self.choose(start, len(runs)) if len(runs) > 1 else 0]
+        symbol, end, dots, primes = runs[self.choose(start, len(runs)) if len(runs) > 1 else 0]
         self.at = end
-        span = self.span(start)
-        value = self.named(symbol, span, start)
-        for _ in range(dots):
-            value = Product((Name(LAPLACE, span=span), value), span=span)
-        if dots > 1:
-            squared = Power(Name(LAPLACE, span=span), Number(Fraction(dots), span=span), span=span)
-            value = Product((squared, self.named(symbol, span, start)), span=span)
-        self.applied(value)
+        value = self.named(symbol, self.span(start), start)
+        if self.notation.motion:
+            value = self.moving(value, dots, primes)
+        else:
+            self.applied(value)
         if alone:
             return value
         result = self.powers(value, start)
@@ -943,7 +975,7 @@ class _LatexReader:
         argument = self.group_expression()
         return Call("exp", argument, span=self.span(start))
 
-    def cut(self) -> list[tuple[PrintedSymbol, int, int]]:
+    def cut(self) -> list[tuple[PrintedSymbol, int, int, int]]:
         """Return the first symbol of letters side by side, in each way the names that are known allow."""
         start = self.at
         singles: list[tuple[str, int]] = []
@@ -991,19 +1023,22 @@ class _LatexReader:
             self.at = at
         return len(singles) in ends
 
-    def one_symbol(self, count: int) -> tuple[PrintedSymbol, int, int]:
-        """Return the symbol of the next letters with its scripts, its end and its dots; nothing is taken."""
-        at = self.at
+    def one_symbol(self, count: int) -> tuple[PrintedSymbol, int, int, int]:
+        """Return the symbol of the next letters with its scripts, its end, dots and primes; nothing is taken.
+
+        Dots and primes belong to the symbol where they are no derivatives.
+        """
+        at, is_moving = self.at, bool(self.notation.motion)
         base, marks, end, inner = self.base(count)
-        dots = sum(DOTS.get(m, 0) for m in marks) if self.notation.moves else 0
-        words = [m for m in marks if not (self.notation.moves and m in DOTS)]
+        dots = sum(DOTS.get(m, 0) for m in marks) if is_moving else 0
+        words = [m for m in marks if not (is_moving and m in DOTS)]
         self.at = end
         index, primes, label, position = self.scripts(PrintedSymbol(base, "_".join(words), inner))
-        if primes:
+        if primes and not is_moving:
             words.append("p" * primes)
         symbol = PrintedSymbol(base, "_".join(words), inner + index + (f"^{label}" if label else ""))
         self.at = at
-        return symbol, position, dots
+        return symbol, position, dots, primes
 
     def base(self, count: int) -> tuple[str, list[str], int, str]:
         """Return letters, accents, where they end, and an index that stands under an accent."""
@@ -1015,17 +1050,17 @@ class _LatexReader:
             is_group = self.text == "{"
             self.at += is_group
             base, marks, at, inner = self.base(1)
+            if not is_group:
+                return base, [*marks, ACCENTED[text]], end, inner
             self.at = at
             index, primes, label, at = self.scripts(PrintedSymbol(base, "", inner))
-            if is_group and at != end - 1:
+            if at != end - 1:
                 while at < end - 1:  # \overline{EI}: letters that are one name
                     self.at = at
                     more, _, at, _ = self.base(1)
                     base += more
                 if at != end - 1:
                     self.refuse(f"{text} over more than a symbol is not read", at=start)
-            elif not is_group:
-                at = end
             extra = ["p" * primes] if primes else []
             return base, [*marks, ACCENTED[text], *extra], end, inner + index + label
         if text in FONTS:
@@ -1129,7 +1164,7 @@ class _LatexReader:
         if len(texts) > 2 and texts[0] == "(" and texts[-1] == ")":  # noqa: PLR2004
             word = "".join(texts[1:-1])
             if word.isdigit():
-                return int(word) if self.notation.moves else f"d{word}"
+                return int(word) if self.notation.motion else f"d{word}"
             if word.isalnum():
                 return word
         word = "".join(LETTERS.get(t, t) for t in texts)
@@ -1211,77 +1246,76 @@ class _LatexReader:
             for i, t in enumerate(self.tokens[start : self.at])
             if t.text not in "{}_^" and (t.text not in FONTS or not i)
         ]
+        if self.notation.motion:  # derivatives are no other symbols
+            kept = [text for text in kept if ACCENTED.get(text) not in DOTS and text not in PRIMES]
         typed = " ".join(sorted(kept))
         if not self.bound and self.typed.setdefault(name, typed) != typed:
             message = f"two symbols would both be '{name}' here: {self.typed[name]} and {typed}"
             self.refuse(message, "name one of them in [notation]", start)
 
-    def applied(self, value: Expression) -> bool:
-        """Skip the argument of a function of s or t; refuse what could be a factor as well."""
-        if self.text not in ("(", "["):
-            return False
-        end = self.end_of_bracket(self.at)
-        if end < 0:
-            return False
-        inside = [
-            t.text for t in self.tokens[self.at + 1 : end - 1] if t.text not in FONTS and t.text not in "{}"
-        ]
-        typed = "".join(inside)
-        symbol = next((n for n in names(value) if isinstance(n, Name) and n.name != LAPLACE), None)
-        name = symbol.name if symbol is not None else ""
-        if name in ("", "pi"):
-            return False
-        is_known = name in self.notation.names.values() and name not in self.notation.signals
-        if typed in (
-            "s",
-            "j\\omega",
-            "i\\omega",
-            "t",
-            "s,t",
-            "\\omega",
-            "p",
-            "z",
-            "D",
-            "x,t",
-            "x,s",
-            "x",
-            r"\imath\omega",
-            r"\jmath\omega",
-        ):
-            if is_known and typed in ("t", "x,t", "x,s", "s,t"):
-                is_known = False
-            bare = typed in ("s", "p", "D", "z", "x", "t", "\\omega")
-            if is_known:
-                if self.choose(self.at, 2):
-                    return False
-                self.at = end
-                return True
-            if (
-                bare
-                and typed in ("p", "D", "z", "x", "\\omega")
-                and PrintedSymbol(LETTERS.get(typed, typed)) in self.notation.names
-                and typed != "x"
-            ):
-                if self.choose(self.at, 2):
-                    return False
+    def moving(self, value: Expression, dots: int, primes: int) -> Expression:
+        """Return a symbol of an equation of motion with its derivatives, and where along x it is taken."""
+        if not isinstance(value, Name):
+            return value
+        if self.notation.motion == "time":
+            self.applied(value)
+            return Derivative(value.name, dots + primes, span=value.span) if dots + primes else value
+        placed = self.placed(Derivative(value.name, primes, span=value.span) if primes else value)
+        return _product(_differentiation(dots, value.span), placed, value.span, self) if dots else placed  # type: ignore[return-value, arg-type]
+
+    def placed(self, value: Expression) -> Expression:
+        """Return a field, or its derivative along x, at the point that follows it, if one does."""
+        name, order = (value.name, value.order) if isinstance(value, Derivative) else (value.name, 0)  # type: ignore[attr-defined]
+        inner: Sequence[LatexToken] = ()
+        if self.text == "(" and (end := self.end_of_bracket(self.at)) > 0:
+            items = "".join(t.text for t in self.tokens[self.at + 1 : end - 1]).split(",")
+            kept = [item for item in items if item not in ("t", "s")]
+            is_point = len(kept) < len(items) or order or re.fullmatch(r"0|[lLx]|\\ell", kept[0])
+            if not is_point:
+                return value
+            count = len(self.tokens[self.at + 1 : end - 1]) - (2 if len(items) > 1 else 0)
+            first = self.at + 1 if not items or items[0] in kept else self.at + 3
+            inner = self.tokens[first : first + count] if kept else ()
             self.at = end
-            return True
-        if typed.startswith(("t+", "t-")) and PrintedSymbol("t") not in self.notation.names:
-            self.refuse(f"a function of time, {name}({typed[:40]}), is not read")
-        is_scaled = re.fullmatch(r"-?(?:[\d./^{}s]|\\omega|j|i|p)+", typed) and not typed.isdigit()
-        if is_scaled and not is_known:
-            self.refuse(f"'{name}({typed[:40]})' may be a product or a value of a function")
-        commas = [t for t, d in with_depth(self.tokens[self.at + 1 : end - 1]) if t.text == "," and not d]
-        if commas:
-            self.refuse(f"a function of several variables, {name}({typed[:40]}), is not read")
-        if is_known:
-            return False
-        plain = re.fullmatch(r"[a-zA-Z]|\\[A-Za-z]+|\d+(\.\d+)?|[a-zA-Z]_\w", typed)
-        if plain and not self.notation.moves:
-            if self.choose(self.at, 2):
+        elif self.text in ("|", r"\vert", r"\Big|") and self.ahead() == "_":
+            end = group_end(self.tokens, self.at + 2)
+            inner = [t for t in self.tokens[self.at + 2 : end] if t.text not in "{}"]
+            if text_of(inner[:2]) != "x=":
+                self.unexpected()
+            inner, self.at = inner[2:], end
+        if not inner or text_of(inner) == "x":
+            return value
+        point = _LatexReader(inner, self.notation, {}, self.bound).everything()
+        return Call(name, self.expression_of(point), order, span=value.span)
+
+    def applied(self, value: Expression) -> None:
+        """Skip the argument of a function of s or t; refuse what could be a factor as well."""
+        end = self.end_of_bracket(self.at) if self.text in ("(", "[") else -1
+        name = value.name if isinstance(value, Name) else ""
+        if end < 0 or name in ("", "pi", LAPLACE):
+            return
+        inside = self.tokens[self.at + 1 : end - 1]
+        typed = "".join(t.text for t in inside if t.text not in FONTS and t.text not in "{}")
+        names_known = self.notation.names
+        is_constant = name in names_known.values() and name not in self.notation.signals
+        if typed in ARGUMENTS:
+            is_product = is_constant and not typed.endswith("t")
+            is_product |= (
+                typed in ("p", "z", "D", r"\omega")
+                and PrintedSymbol(LETTERS.get(typed, typed)) in names_known
+            )
+            if not (is_product and self.choose(self.at, 2)):
                 self.at = end
-            return False
-        return False
+        elif typed.startswith(("t+", "t-")) and PrintedSymbol("t") not in names_known:
+            self.refuse(f"a function of time, {name}({typed[:40]}), is not read")
+        elif any(t.text == "," and not depth for t, depth in with_depth(inside)):
+            self.refuse(f"a function of several variables, {name}({typed[:40]}), is not read")
+        elif is_constant:
+            return
+        elif re.fullmatch(r"-?(?:[\d./^s]|\\omega|j|i|p)+", typed) and not typed.isdigit():
+            self.refuse(f"'{name}({typed[:40]})' may be a product or a value of a function")
+        elif re.fullmatch(r"[a-zA-Z]|\\[A-Za-z]+|\d+(\.\d+)?|[a-zA-Z]_\w", typed) and self.choose(self.at, 2):
+            self.at = end
 
     # -- matrices, products, derivatives --
 
@@ -1373,48 +1407,43 @@ class _LatexReader:
         return value
 
     def derivative(self, start: int) -> Value | None:
-        r"""Return ``\frac{d^2 x}{dt^2}`` as s^2 x, ``None`` if a fraction is no derivative."""
+        r"""Return ``\frac{d^2 x}{dt^2}`` as x'', ``None`` if a fraction is no derivative."""
         end = group_end(self.tokens, self.at)
         stop = group_end(self.tokens, end)
-        above = [t for t in self.tokens[self.at : end] if t.text not in FONTS]
-        below = text_of([t for t in self.tokens[end:stop] if t.text not in FONTS and t.text not in "{}"])
-        match = re.fullmatch(r"(d|\\partial)t(?:\^(\d))?", below)
-        typed = text_of([t for t in above if t.text not in "{}"])
-        head = re.match(r"(d|\\partial)(?:\^(\d))?(.*)", typed, re.DOTALL)
-        if match is None or head is None or head[1] != match[1] or (head[2] or "1") != (match[2] or "1"):
-            if (
-                below.startswith((r"\partial", "d"))
-                and head is not None
-                and re.match(r"(d|\\partial)[a-z]", below)
-            ):
-                if PrintedSymbol("d") not in self.notation.names or below.startswith(r"\partial"):
-                    self.refuse("a derivative is not read here", "write it with s, or as x'", start)
+        shown = [t for t in self.tokens[self.at : end] if t.text not in FONTS]
+        below = text_of(t for t in self.tokens[end:stop] if t.text not in FONTS and t.text not in "{}")
+        match = re.fullmatch(r"(d|\\partial)([a-z])(?:\^(\d))?", below)
+        above = shown[1:-1] if shown and shown[0].text == "{" else shown
+        head = re.match(r"(d|\\partial)(?:\^(\d|\{\d\}))?", text_of(above))
+        if match is None or head is None or head[1] != match[1]:
             return None
-        if not self.notation.moves:
-            self.refuse("a derivative is not read in a transfer function", "write it with s", start)
-        order = int(match[2] or 1)
-        skip = 1 + (2 if head[2] else 0)
-        content = self.tokens[self.at : end]
-        while content and content[0].text in ("{", *FONTS):
-            content = content[1:]
-        content = [t for t in content if t.text not in FONTS][skip:]
-        depth = 0
-        kept = []
-        for token in content:
-            depth += {"{": 1, "}": -1}.get(token.text, 0)
-            if depth >= 0:
-                kept.append(token)
-            depth = max(depth, 0)
+        if (head[2] or "1").strip("{}") != (match[3] or "1") or (
+            match[1] == "d" and PrintedSymbol("d") in self.notation.names
+        ):
+            return None
+        motion, order = self.notation.motion, int(match[3] or 1)
+        if not motion or match[2] not in ("t", "x") or (motion == "time" and match[2] == "x"):
+            self.refuse("a derivative is not read here", "write it with s, or as x'", start)
         self.at = stop
-        if kept:
-            operand: Value = _LatexReader(kept, self.notation, {}, self.bound).everything()
-        else:
-            operand = self.operand()
+        inner = above[len(tokens_of(Text.alone("", head[0]))) :]
+        operand = _LatexReader(inner, self.notation, {}, self.bound).everything() if inner else self.operand()
         span = self.span(start)
-        operator: Expression = Name(LAPLACE, span=span)
-        if order > 1:
-            operator = Power(operator, Number(Fraction(order)), span=span)
-        return _product(operator, operand, span, self)
+        if match[2] == "t" and not (motion == "time" and isinstance(operand, Name)):
+            return _product(_differentiation(order, span), operand, span, self)
+        value = self.expression_of(operand)
+        if not isinstance(value, Name):
+            return Differentiated(value, order, span=span)
+        derived = Derivative(value.name, order, span=span)
+        if motion == "time":
+            self.applied(value)
+            return derived
+        return self.placed(derived)
+
+
+def _differentiation(order: int, span: Span | None) -> Expression:
+    """Return a power of s."""
+    laplace = Name(LAPLACE, span=span)
+    return Power(laplace, Number(Fraction(order), span=span), span=span) if order > 1 else laplace
 
 
 # --- trees in the shape the text reader gives them ---
@@ -1466,9 +1495,7 @@ def _product(a: Value, b: Value, span: Span, reader: _LatexReader) -> Value:
             reader.refuse("matrices of these sizes cannot be multiplied")
         columns = list(zip(*b.rows, strict=True))
         rows = [
-            tuple(
-                sum_of(_times([x, y], span) for x, y in zip(row, column, strict=True)) for column in columns
-            )
+            tuple(sum_of(product_of(pair) for pair in zip(row, column, strict=True)) for column in columns)
             for row in a.rows
         ]
         whole = Matrix(tuple(rows), span)
@@ -1537,6 +1564,8 @@ def settled(value: Value, notation: PaperNotation, span: Span) -> Value:
 def _in_s(expression: Expression, notation: PaperNotation, span: Span) -> Expression:
     known = set(notation.names.values())
     used = {n.name for n in names(expression) if isinstance(n, Name)}
+    if notation.motion:
+        return expression
     units = [u for u in IMAGINARY if u in used and u not in known]
     frequency = next((w for w in ("omega", "Omega") if w in used and w not in known), None)
     if not units:

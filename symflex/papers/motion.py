@@ -1,0 +1,373 @@
+r"""Equations of motion, as a paper prints them, as a specification.
+
+Input: the mathematics of a paper. Output: the text of a specification with ``[equations]``, or ``[fields]``
+where derivatives along x occur; comments say what each line was read from, and gaps are marked.
+
+    (M+m)\ddot{x} + ml\ddot\theta = F      equations = ["(M + m)*x'' + m*l*theta'' = F"]
+
+What is differentiated in time is an unknown. In a linear equation each term has an unknown in it or is an
+input; what else occurs is a parameter. Values are not in equations, so they are gaps.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Final
+
+from symflex.errors import SpecError
+from symflex.expressions import (
+    FUNCTIONS,
+    Call,
+    Derivative,
+    Expression,
+    Name,
+    Negative,
+    Power,
+    Product,
+    Quotient,
+    Sum,
+    format_expression,
+    is_number,
+    names,
+    nodes,
+    number,
+)
+from symflex.papers.formula import LAPLACE, Matrix, PaperNotation, PrintedSymbol, defined_symbol, read_value
+from symflex.papers.source import Paper, PrintedEquation, refusal, statements, text_of, written
+
+GAP: Final = "# GAP:"
+FORCES: Final = ("F", "f", "u", "U", "tau", "T", "M", "Q", "V", "v", "i", "I", "w", "q", "p", "r", "d")
+CONSTANT: Final = ("g", "pi")  # what is no input, however it stands there
+
+
+@dataclass(frozen=True)
+class _Equation:
+    """One equation with both sides."""
+
+    left: Expression
+    right: Expression
+    printed: PrintedEquation
+
+    @property
+    def text(self) -> str:
+        return f"{format_expression(self.left)} = {format_expression(self.right)}"
+
+    @property
+    def terms(self) -> tuple[Expression, ...]:
+        """The terms of both sides that are not zero, without their signs."""
+        sides = (self.left, self.right)
+        found = [t for side in sides for t in (side.terms if isinstance(side, Sum) else (side,))]
+        bare = (t.operand if isinstance(t, Negative) else t for t in found)
+        return tuple(t for t in bare if not is_number(t, 0))
+
+
+@dataclass
+class _PaperMotion:
+    """What was read of a paper."""
+
+    equations: list[_Equation] = field(default_factory=list)
+    definitions: dict[str, tuple[Expression, PrintedEquation]] = field(default_factory=dict)
+    gaps: list[str] = field(default_factory=list)
+    timed: set[str] = field(default_factory=set)  # what is written as a function of t
+
+
+def motion_specification(paper: Paper, title: str) -> str:
+    """Return the specification of the equations of motion in a paper; SF115 when there are none."""
+    is_field = any(r"\partial" in text_of(d.tokens) for d in paper.displays)
+    found = _read(paper, PaperNotation({PrintedSymbol("s"): LAPLACE}, motion="field" if is_field else "time"))
+    if not any(
+        isinstance(n, Derivative | Call)
+        for one in found.equations
+        for n in (*names(one.left), *names(one.right))
+    ):
+        span = paper.displays[0].span if paper.displays else None
+        message = "there are no equations of motion: no displayed equation has a derivative in time"
+        raise refusal(span, message, r"derivatives are \dot{x}, x'' or \frac{d^2 x}{dt^2}")
+    return _field_text(found, title) if is_field else _text(found, title)
+
+
+def _read(paper: Paper, notation: PaperNotation) -> _PaperMotion:
+    found = _PaperMotion()
+    for display in paper.displays:
+        try:
+            if display.problem is not None:
+                raise SpecError(display.problem)
+            equations = statements(display.tokens)
+        except SpecError as error:
+            if not display.is_inline:
+                found.gaps.append(f"line {display.span.line} is not read: {error.diagnostics[0].message}")
+            continue
+        for equation in equations:
+            if len(equation.sides) > 1 and not equation.is_condition:
+                _take(equation, notation, found, is_inline=display.is_inline)
+    return found
+
+
+def _take(
+    equation: PrintedEquation, notation: PaperNotation, found: _PaperMotion, *, is_inline: bool
+) -> None:
+    typed = [t.text for t in equation.tokens]
+    try:
+        sides = [read_value(side, notation) for side in equation.sides]
+    except SpecError as error:
+        if not is_inline:
+            said = error.diagnostics[0]
+            found.gaps.append(f"line {equation.span.line} is not read: {said.message}: {_comment(equation)}")
+        return
+    if equation.nearly is not None:
+        if not is_inline:
+            found.gaps.append(f"line {equation.span.line} holds only nearly: {_comment(equation)}")
+        return
+    for left, right in _rows(sides[0], sides[-1]):
+        one = _Equation(left, right, equation)
+        moving = any(
+            isinstance(n, Derivative) or (isinstance(n, Name) and n.name == LAPLACE)
+            for n in (*names(left), *names(right))
+        )
+        placed = any(isinstance(n, Call) and n.name not in FUNCTIONS for n in (*names(left), *names(right)))
+        if (moving or placed) and not is_inline:
+            found.equations.append(one)
+        elif defined_symbol(equation) is not None and isinstance(left, Name) and not _is_value(right):
+            found.definitions.setdefault(left.name, (right, equation))
+    for node in (n for side in sides for e in _entries(side) for n in names(e)):
+        symbol = node.name.split("_")[0]
+        for i, text in enumerate(typed):
+            if text.lstrip("\\") == symbol and _is_timed(typed[i + 1 : i + 8]):
+                found.timed.add(node.name)
+
+
+def _is_timed(following: Sequence[str]) -> bool:
+    """Tell whether the argument t follows a symbol, behind its index."""
+    before, bracket, after = "".join(following).partition("(")
+    return (
+        bool(bracket)
+        and after.startswith("t)")
+        and re.fullmatch(r"\}*(_(\w|\{\w+\}))?\}*", before) is not None
+    )
+
+
+def _is_value(expression: Expression) -> bool:
+    return not names(expression)
+
+
+def _entries(value: Expression | Matrix) -> Iterator[Expression]:
+    if isinstance(value, Expression):
+        yield value
+    else:
+        yield from (e for row in value.rows for e in row)
+
+
+def _rows(left: Expression | Matrix, right: Expression | Matrix) -> list[tuple[Expression, Expression]]:
+    """Return the equations between two sides, one for each entry of vectors."""
+    if isinstance(left, Expression) and isinstance(right, Expression):
+        return [(left, right)]
+    first, second = list(_entries(left)), list(_entries(right))
+    if isinstance(left, Expression) or isinstance(right, Expression):
+        whole = first if isinstance(left, Matrix) else second
+        other = second[0] if isinstance(left, Matrix) else first[0]
+        return [(e, number(0)) for e in whole] if is_number(other, 0) else []
+    return list(zip(first, second, strict=True)) if len(first) == len(second) else []
+
+
+def _comment(equation: PrintedEquation) -> str:
+    return " ".join(written(equation.tokens).split())[:200]
+
+
+def _named(expressions: Iterable[Expression]) -> dict[str, None]:
+    return dict.fromkeys(
+        n.name
+        for e in expressions
+        for n in names(e)
+        if isinstance(n, Name | Derivative) and n.name != LAPLACE
+    )
+
+
+def _text(found: _PaperMotion, title: str) -> str:
+    sides = [e for one in found.equations for e in (one.left, one.right)]
+    derived = dict.fromkeys(n.name for e in sides for n in names(e) if isinstance(n, Derivative))
+    derived |= dict.fromkeys(
+        n.name
+        for e in sides
+        for n in names(e)
+        if isinstance(n, Name) and n.name in found.timed and _times_s(e, n)
+    )
+    unknowns = list(derived)
+    kept: dict[str, Expression] = {}
+    for name, (value, printed) in found.definitions.items():
+        if name in unknowns or set(_named([value])) & set(unknowns):
+            found.equations.append(_Equation(Name(name), value, printed))
+            unknowns += [] if name in unknowns else [name]
+        elif name in _named([*sides, *kept.values()]):
+            kept[name] = value
+    is_nonlinear = any(_is_nonlinear(term, unknowns) for one in found.equations for term in one.terms)
+    everything = _named([e for one in found.equations for e in (one.left, one.right)] + list(kept.values()))
+    inputs = list(_inputs(found, unknowns, kept, everything))
+    parameters = [n for n in everything if n not in (*unknowns, *inputs, *kept, "pi")]
+    lines = [*_heading(found, title)]
+    if len(found.equations) != len(unknowns):
+        lines.append(
+            f"{GAP} {len(found.equations)} equations for {len(unknowns)} unknowns: {', '.join(unknowns)}"
+        )
+    if not inputs:
+        lines.append(f"{GAP} no input was found: add what acts to an equation and to [inputs]")
+    lines += _parameters(parameters)
+    if kept:
+        lines += ["", "[definitions]", *(f'{n} = "{format_expression(e)}"' for n, e in kept.items())]
+    lines += ["", "[equations]", f"unknowns  = [{', '.join(_quoted(u) for u in unknowns)}]", "equations = ["]
+    for one in found.equations:
+        lines += [f"    {_quoted(one.text)},  # line {one.printed.span.line}: {_comment(one.printed)}"]
+    lines += ["]"]
+    if is_nonlinear:
+        lines += [
+            "",
+            f"{GAP} the equations are not linear; rest at zero is assumed here",
+            "[operating_point]",
+        ]
+        lines += [f'{name} = "0"' for name in (*unknowns, *inputs)]
+    return "\n".join([*lines, *_ends(unknowns, inputs), ""])
+
+
+def _times_s(expression: Expression, name: Expression) -> bool:
+    return any(
+        isinstance(n, Product) and Name(LAPLACE) in n.factors and name in n.factors for n in nodes(expression)
+    )
+
+
+def _heading(found: _PaperMotion, title: str) -> Iterator[str]:
+    yield f"# Read from the equations of motion in {title}."
+    yield "# Each line says what it was read from; look for GAP where something is still to be said."
+    yield from (f"{GAP} {gap}" for gap in found.gaps)
+    yield "symflex = 1"
+    yield f"title   = {_quoted(title)}"
+
+
+def _parameters(parameters: Sequence[str]) -> Iterator[str]:
+    if parameters:
+        yield ""
+        yield f'{GAP} values and units of parameters, such as value = "2 kg"'
+        yield "[parameters]"
+        yield from (f"{name} = {{}}" for name in parameters)
+
+
+def _ends(unknowns: Sequence[str], inputs: Sequence[str], outputs: Sequence[str] = ()) -> Iterator[str]:
+    yield from ("", "[inputs]", *(f"{name} = {{}}" for name in inputs))
+    yield from ("", "[outputs]")
+    taken = {*unknowns, *inputs}
+    for name, written_as in zip(unknowns, outputs or unknowns, strict=True):
+        shown = name[0].upper() + name[1:]
+        yield f'{shown if shown not in taken else f"{name}_out"} = "{written_as}"'
+
+
+def _quoted(text: str) -> str:
+    return '"' + "".join(c for c in text if c.isprintable()).replace("\\", "/").replace('"', "'") + '"'
+
+
+def _inputs(
+    found: _PaperMotion, unknowns: Sequence[str], kept: dict[str, Expression], everything: Iterable[str]
+) -> Iterator[str]:
+    """Yield what acts: functions of time that are no unknowns, and what stands alone in a term."""
+    moving = [t for one in found.equations for t in one.terms if set(_named([t])) & set(unknowns)]
+    beside = set(_named(moving))
+    chosen: dict[str, None] = {}
+    for one in found.equations:
+        for term in one.terms:
+            held = [n for n in _named([term]) if n not in (*kept, *CONSTANT)]
+            if set(held) & set(unknowns):
+                continue
+            timed = [n for n in held if n in found.timed]
+            alone = [n for n in held if n not in beside] or (held if len(held) == 1 else [])
+            forces = [n for n in alone if n.split("_")[0] in FORCES]
+            pick = timed or (alone if len(alone) == 1 else forces[:1])
+            if "g" in _named([term]) and not timed:
+                pick = []
+            if pick:
+                chosen.setdefault(pick[0])
+            else:
+                found.gaps.append(
+                    f"the term {format_expression(term)} of line {one.printed.span.line} has no unknown in "
+                    "it and is no input"
+                )
+    yield from chosen
+    yield from (n for n in everything if n in found.timed and n not in unknowns and n not in chosen)
+
+
+def _is_nonlinear(term: Expression, unknowns: Sequence[str]) -> bool:
+    """Tell whether a term is no multiple of an unknown or of its derivatives."""
+
+    def degree(node: Expression) -> int:
+        match node:
+            case Derivative():
+                return 1
+            case Name(name):
+                return int(name in unknowns)
+            case Product(factors):
+                return sum(map(degree, factors))
+            case Sum(terms):
+                return max(map(degree, terms))
+            case Quotient(above, below):
+                return degree(above) + 2 * degree(below)
+            case Power(base, _):
+                return 2 * degree(base)
+            case Call():
+                return 2 * max((degree(c) for c in node.children), default=0)
+            case Negative(operand):
+                return degree(operand)
+        return 0
+
+    return degree(term) > 1
+
+
+# --- fields ---
+
+
+def _field_text(found: _PaperMotion, title: str) -> str:
+    """Return a specification with one field: an equation along x, and conditions at its ends."""
+    sides = [e for one in found.equations for e in (one.left, one.right)]
+    points = [n for e in sides for n in names(e) if isinstance(n, Call) and n.name not in FUNCTIONS]
+    along = dict.fromkeys(n.name for e in sides for n in names(e) if isinstance(n, Derivative))
+    unknowns = list(along) or list(dict.fromkeys(n.name for n in points))
+    fields = [
+        one for one in found.equations if not any(n in names(one.left) + names(one.right) for n in points)
+    ]
+    conditions = [one for one in found.equations if one not in fields]
+    kept = {n: v for n, (v, _) in found.definitions.items() if n in _named(sides) and n not in unknowns}
+    ends = list(dict.fromkeys(format_expression(n.argument) for n in points))
+    everything = _named([*sides, *kept.values(), *(n.argument for n in points)])
+    inputs = [n for n in everything if n in found.timed and n not in unknowns]
+    inputs += [n for n in _inputs_of_conditions(conditions) if n not in (*inputs, *ends)]
+    parameters = [n for n in everything if n not in (*unknowns, *inputs, *kept, "x", "pi")]
+    last = next((e for e in reversed(ends) if e != "0"), "l")
+    lines = [*_heading(found, title)]
+    if len(unknowns) != 1 or len(fields) != 1:
+        lines.append(f"{GAP} {len(fields)} equations along x for the fields {', '.join(unknowns) or 'none'}")
+    order = max((n.order for e in sides for n in names(e) if isinstance(n, Derivative)), default=0)
+    if len(conditions) != order:
+        lines.append(f"{GAP} {len(conditions)} conditions for an equation of order {order} along x")
+    if not inputs:
+        lines.append(f"{GAP} no input was found: add what acts to a condition and to [inputs]")
+    lines += _parameters(list(dict.fromkeys([*parameters, *([last] if last.isidentifier() else [])])))
+    if kept:
+        lines += ["", "[definitions]", *(f'{n} = "{format_expression(e)}"' for n, e in kept.items())]
+    name = unknowns[0] if unknowns else "w"
+    lines += ["", f"[fields.{name}]", f'domain     = ["0", "{last}"]']
+    lines += [
+        f"equation   = {_quoted(one.text)}  # line {one.printed.span.line}: {_comment(one.printed)}"
+        for one in fields[:1]
+    ]
+    lines += ["conditions = ["]
+    lines += [
+        f"    {_quoted(one.text)},  # line {one.printed.span.line}: {_comment(one.printed)}"
+        for one in conditions
+    ]
+    return "\n".join([*lines, "]", *_ends([name], inputs, [f"{name}({last})"]), ""])
+
+
+def _inputs_of_conditions(conditions: Sequence[_Equation]) -> Iterator[str]:
+    for one in conditions:
+        for term in one.terms:
+            held = list(_named([term]))
+            has_field = any(isinstance(n, Call) and n.name not in FUNCTIONS for n in names(term))
+            if len(held) == 1 and not has_field:
+                yield held[0]

@@ -1,0 +1,92 @@
+"""Equations of motion of textbooks become specifications that give the textbooks' transfer functions."""
+
+from __future__ import annotations
+
+import pytest
+
+from symflex.errors import SpecError, Text
+from symflex.papers.motion import motion_specification
+from symflex.papers.source import read_text
+from symflex.pipeline import loads
+
+
+def specification(latex: str) -> str:
+    return motion_specification(read_text(Text.alone("paper.tex", latex)), "paper.tex")
+
+
+def equations(text: str) -> list[str]:
+    return [line.split('"')[1] for line in text.splitlines() if line.startswith('    "')]
+
+
+CART = r"""\begin{align}
+(M+m)\ddot{x} + b\dot x + ml\ddot\theta &= F(t) \\
+ml^2\ddot\theta + ml\ddot x - mgl\theta &= 0 \end{align}"""
+
+
+def test_equations_in_dots_become_equations_in_primes() -> None:
+    text = specification(CART)
+    assert equations(text) == [
+        "(M + m)*x'' + b*x' + m*l*theta'' = F",
+        "m*l^2*theta'' + m*l*x'' - m*g*l*theta = 0",
+    ]
+    model = loads(text)
+    assert [p.name for p in model.parameters] == ["M", "m", "b", "l", "g"]
+    assert model.transfer_functions == (("X", "F"), ("Theta", "F"))
+
+
+def test_each_line_says_what_it_was_read_from() -> None:
+    assert r"# line 2: (M+m)\ddot{x} + b\dot x + ml\ddot\theta &= F(t)" in specification(CART)
+
+
+def test_values_are_marked_as_gaps() -> None:
+    assert '# GAP: values and units of parameters, such as value = "2 kg"' in specification(CART)
+
+
+def test_quotients_of_differentials_and_algebraic_equations_are_read() -> None:
+    text = specification(
+        r"\[ J\frac{d\omega}{dt} + b\,\omega = T - T_d(t), \quad L\frac{di}{dt} + R i = V(t) - K_e\omega \]"
+        r" with $T = K_t i$"
+    )
+    assert equations(text) == ["J*omega' + b*omega = T - T_d", "L*i' + R*i = V - K_e*omega", "T = K_t*i"]
+    assert loads(text).transfer_functions == (
+        *(("Omega", "T_d"), ("Omega", "V"), ("I", "T_d"), ("I", "V")),
+        *(("T_out", "T_d"), ("T_out", "V")),
+    )
+
+
+def test_matrices_become_an_equation_for_each_row() -> None:
+    text = specification(
+        r"\[ \begin{bmatrix} m & 0 \\ 0 & M \end{bmatrix}\begin{bmatrix} \ddot x_1 \\ \ddot x_2\end{bmatrix}+"
+        r"\begin{bmatrix} k & -k \\ -k & k \end{bmatrix} \begin{bmatrix} x_1 \\ x_2 \end{bmatrix} ="
+        r"\begin{bmatrix} F \\ 0 \end{bmatrix} \]"
+    )
+    assert equations(text) == ["m*x_1'' + k*x_1 - k*x_2 = F", "M*x_2'' - k*x_1 + k*x_2 = 0"]
+
+
+def test_nonlinear_equations_get_an_operating_point_that_is_marked() -> None:
+    text = specification(r"\[ ml^2\ddot\theta + mgl\sin(\theta) = \tau \]")
+    assert equations(text) == ["m*l^2*theta'' + m*g*l*sin(theta) = tau"]
+    assert "# GAP: the equations are not linear; rest at zero is assumed here" in text
+    assert loads(text).operating_point is not None
+
+
+def test_a_field_with_conditions_becomes_a_field() -> None:
+    text = specification(
+        r"\begin{align} EI\frac{\partial^4 w}{\partial x^4} + \rho A\frac{\partial^2 w}{\partial t^2} &= 0\\"
+        r"w(0,t) = 0, \quad \left.\frac{\partial w}{\partial x}\right|_{x=0} &= 0 \\"
+        r"EI w''(l,t) = 0, \quad EI w'''(l,t) &= F(t) \end{align}"
+    )
+    assert equations(text) == ["w(0) = 0", "w'(0) = 0", "E*I*w''(l) = 0", "E*I*w'''(l) = F"]
+    assert """equation   = "E*I*w'''' + rho*A*s^2*w = 0\"""" in text
+    assert loads(text).transfer_functions == (("W", "F"),)
+
+
+def test_what_is_not_read_is_a_gap() -> None:
+    text = specification(r"\[ m\ddot x + kx = F \] \[ y = \int x dt \] \[ J\ddot\phi + mg = u \]")
+    assert "# GAP: line 1 is not read: a limit or an integral is not read" in text
+    assert "# GAP: the term m*g of line 1 has no unknown in it and is no input" in text
+
+
+def test_a_paper_without_motion_is_refused() -> None:
+    with pytest.raises(SpecError, match="there are no equations of motion"):
+        specification(r"\[ G = \frac{1}{s} \]")
