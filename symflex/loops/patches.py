@@ -4,35 +4,34 @@ Input: a function of s and a parameter p, complex numbers or balls. Output: a :c
 the function does on smaller discs. Example: ``exp(s p)`` on abs(s) <= 1 and abs(p) <= 1 is
 ``sum((s p)^k/k!)`` with k < 20, to 4e-19.
 
-Samples on circles give the coefficients. If abs(f) <= M on discs that are 1/q times as large, those left out,
-and those that samples do not tell from others, are at most M q^k (Cauchy 1831). Balls of wide discs say
-little of f, but enough of M.
+Power series in s, at samples of p on a circle, give the coefficients. If abs(f) <= M on discs that are 1/q
+times as large, those left out, and those that samples do not tell from others, are at most M q^k (Cauchy
+1831). Balls of wide discs say little of f, but enough of M.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
-from itertools import product
 from math import ceil, comb, inf, log
 
 import numpy as np
 import numpy.typing as npt
-from flint import acb, arb
+from flint import acb, acb_series, arb
 
-from symflex.balls import precision
+from symflex.balls import Value, at_centre, precision, series_terms
 
 BITS = 64  # of samples and bounds
 RATIOS = (4, 8, 16, 32, 64, 128)  # by which discs are larger on which the function is bounded
 ACCURACY = 1e-5  # relative to the function's size: narrow parts are examined without patches
-MOST_SAMPLES = 500  # beyond which smaller discs take less
+MOST_COEFFICIENTS = 500  # beyond which smaller discs take less
 ROOM = 1.01  # by which discs are larger than what lies in them
 RESOLVED = 20  # times the error of a patch that a bound is, if a smaller disc is worth it
 ULP = 2.0**-50  # far more than a double is off, relative to it
 ROUNDING = 1e-13  # far more than transforms and shifts lose, relative to what they add up
 
-Function = Callable[[Sequence[acb], acb], list[acb]]  # its values at several s, for one parameter
+Function = Callable[[Value, acb], Value]  # its value at s, or series about one, for one parameter
 Coefficients = npt.NDArray[np.complex128]
 
 
@@ -82,39 +81,64 @@ class Patch:
 def patch(function: Function, centre: complex, radius: float, middle: float, half: float) -> Patch | None:
     """Return a polynomial for a function that is analytic where it is finite; None where discs are too large.
 
-    >>> exponential = lambda points, p: [(s * p).exp() for s in points]
+    >>> exponential = lambda s, p: (s * p).exp()
     >>> one = patch(exponential, 1j, 0.1, 2.0, 0.1)
     >>> one is not None and one.error < 1e-5 and not one.on(1j, 0.02, 2.0, 0.02)[0].may_vanish
     True
     """
     with precision(BITS):
-        size = max(float(abs(x).upper()) for x in function(_circle(centre, radius, 4), acb(middle)))
-        best = MOST_SAMPLES + 1, 0, 0, inf, 0.0
-        for by_s, by_p in product(RATIOS, RATIOS):
-            ((most,),) = (function([_disc(centre, by_s * radius)], _disc(middle, by_p * half)),)
-            bound = float(most.abs_upper())
-            if not (0 < size < inf and bound < inf):
-                continue
+        around = (at_centre(function(s, acb(middle))) for s in _circle(centre, radius, 4))
+        size = max(float(abs(x).upper()) for x in around)
+        best = MOST_COEFFICIENTS + 1, 0, 0, inf
+        bounds = _bounds(function, centre, radius, middle, half) if 0 < size < inf else ()
+        for by_s, by_p, bound in bounds:
             room = max(log(bound) - log(size) - log(ACCURACY), 1.0)
             rows, columns = ceil(room / log(by_s / 2)) + 1, ceil(room / log(by_p)) + 1
             # Twice as large a disc of s bounds slopes.
             tail = (2 / by_s) ** rows + (1 / by_p) ** columns
             error = 2 * bound * tail / ((1 - 2 / by_s) * (1 - 1 / by_p))
-            best = min(best, (rows * columns, rows, columns, error, size))
-        samples, rows, columns, error, _ = best
-        if samples > MOST_SAMPLES:
+            best = min(best, (rows * columns, rows, columns, error))
+        count, rows, columns, error = best
+        if count > MOST_COEFFICIENTS:
             return None
-        points = _circle(centre, radius, rows)
-        table = [function(points, p) for p in _circle(middle, half, columns)]
+        table = _expanded(function, centre, radius, rows, _circle(middle, half, columns))
+        if table is None:
+            return None
         blur = max(float((x.real.rad() + x.imag.rad()).upper()) for row in table for x in row)
         values = np.array([[complex(x.mid()) for x in row] for row in table]).T
     if not np.isfinite(values).all() or not blur < inf:
         return None
-    coefficients = np.fft.fft2(values) / samples
+    coefficients = np.fft.fft(values, axis=1) / columns
     # A shift by up to 1 adds up binomials of coefficients.
     spread = np.abs(coefficients) * 2.0 ** np.add.outer(np.arange(rows), np.arange(columns))
-    noise = samples * (blur + ROUNDING * float(np.abs(values).max())) + ROUNDING * float(spread.sum())
+    noise = count * (blur + ROUNDING * float(np.abs(values).max())) + ROUNDING * float(spread.sum())
     return Patch(centre, radius, middle, half, coefficients, error + noise, error + rows * noise)
+
+
+def _bounds(
+    function: Function, centre: complex, radius: float, middle: float, half: float
+) -> Iterator[tuple[int, int, float]]:
+    """Yield by how much discs of s and p are larger, and a bound on them."""
+    finite = len(RATIOS)
+    for by_s in RATIOS:
+        for i, by_p in enumerate(RATIOS[:finite]):
+            most = function(_disc(centre, by_s * radius), _disc(middle, by_p * half))
+            bound = float(at_centre(most).abs_upper())
+            if not bound < inf:
+                finite = i  # nor is there one on larger discs
+                break
+            yield by_s, by_p, bound
+
+
+def _expanded(
+    function: Function, centre: complex, radius: float, terms: int, parameters: Sequence[acb]
+) -> list[list[acb]] | None:
+    """Return the terms of power series in ``(s - centre)/radius``, one for each parameter."""
+    with series_terms(terms):
+        s = acb_series([acb(centre.real, centre.imag), radius], terms)
+        table = [function(s, p) for p in parameters]
+    series = [each for each in table if isinstance(each, acb_series)]
+    return [[each[k] for k in range(terms)] for each in series] if len(series) == len(table) else None
 
 
 def _circle(centre: complex, radius: float, points: int) -> list[acb]:

@@ -31,6 +31,7 @@ from symflex.balls import (
     Branching,
     Open,
     UndecidedError,
+    Value,
     at_centre,
     ball,
     branch,
@@ -351,17 +352,17 @@ class PolesUpTo:
             return None
         middle = _middle(ends)
         with precision(64):
-            kernels = function.kernels(tf, ((middle, middle),))
+            kernels = replace(function.kernels(tf, ((middle, middle),)), expands_modes=True)
         polynomial, _ = self._factors[factor]
 
-        def values(points: Sequence[acb], parameter: acb) -> list[acb]:
+        def value(s: Value, parameter: acb) -> Value:
             spend()
             moved = replace(kernels, constants={**kernels.constants, name: parameter})
-            return [at_centre(moved.polynomial(polynomial, moved.at(s))) for s in points]
+            return moved.polynomial(polynomial, moved.at(s))
 
         cell = Fraction(number, path.cells), Fraction(number + 1, path.cells)
         half = float(ends[1] - ends[0]) / 2
-        return patch(values, complex(path.middle(cell)), ROOM * path.reach(cell), float(middle), ROOM * half)
+        return patch(value, complex(path.middle(cell)), ROOM * path.reach(cell), float(middle), ROOM * half)
 
     def count(self, at: Fraction, circle: Fraction) -> PoleCount | None:
         """Return how many poles lie on the right and on the axis for one value; None if it is not proved."""

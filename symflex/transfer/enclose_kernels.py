@@ -47,6 +47,7 @@ class KernelValues:
     plans: PolynomialMemo[EvaluationPlan]  # shared by all precisions
     matrices: VaryingMatrices | None = None  # of laws whose coefficients vary along x
     is_modal: bool = True  # fundamental functions are sums over the roots of dispersions, if these are apart
+    expands_modes: bool = False  # long series of them are such sums, too
 
     def at(
         self, s: Value, near: Mapping[str, Value] | None = None, root: Callable[[Value], Value] | None = None
@@ -65,7 +66,7 @@ class KernelValues:
             )
         fundamental: dict[tuple[Dispersion, Factored], tuple[Value, ...]] = {}
         is_long = isinstance(s, acb_series) and s.prec > PAIR
-        roots = {} if is_long else self._roots(coefficients)
+        roots = {} if is_long and not self.expands_modes else self._roots(coefficients)
         values.update(roots)
         for kernel in self.table.kernels:
             law = kernel.dispersion
@@ -350,10 +351,26 @@ def _roots(coefficients: Sequence[Value]) -> list[Value] | None:
     if boxes is None:
         return None
     series: list[Value] = []
+    if any(isinstance(c, acb_series) and c.prec > PAIR for c in coefficients):
+        return [_expanded(coefficients, root) for root in boxes]
     for root in boxes:
         terms = [c[1] * root**i for i, c in enumerate(coefficients) if isinstance(c, acb_series)]
         series.append(acb_series([root, -sum(terms, acb(0)) / slope(root)], 2) if terms else root)
     return series
+
+
+def _expanded(coefficients: Sequence[Value], root: acb) -> acb_series:
+    """Return a simple root as a long series, by Newton's method: each step doubles the exact terms."""
+    terms, known = min(c.prec for c in coefficients if isinstance(c, acb_series)), [root]
+    while len(known) < terms:
+        exact = min(2 * len(known), terms)
+        series, value, slope = (acb_series(start, exact) for start in (known, [1], [0]))
+        for c in reversed(coefficients):
+            value, slope = value * series + c, slope * series + value
+        # The first term is a root, though its ball does not say so.
+        step = acb_series([ZERO, *(value[k] for k in range(1, exact))], exact) / slope
+        known = [series[k] - step[k] for k in range(exact)]
+    return acb_series(known, terms)
 
 
 def _isolated(polynomial: acb_poly, slope: acb_poly) -> list[acb] | None:

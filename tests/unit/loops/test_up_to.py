@@ -4,15 +4,19 @@ Expected values: roots of 4 x 4 determinants of exponentials with mpmath, 30 dig
 two poles meet on the axis. Beck (1952), Gregory and Paidoussis (1966), Bolotin (1963), Euler (1744).
 """
 
+from dataclasses import replace
+from fractions import Fraction
 from math import pi, sqrt
 
 import mpmath
 import numpy as np
 import pytest
-from flint import acb
+from flint import acb, acb_series
 
 from symflex import loads
+from symflex.balls import precision, series_terms
 from symflex.errors import UsageError
+from symflex.loops.over import characteristic
 from symflex.loops.patches import patch
 
 BECK, BECK_OMEGA = 20.0509536189737, 11.0155576409229  # EI/l^2, rad/s
@@ -74,8 +78,8 @@ def the_boundary(found, value, omega, change):
 
 
 def test_a_patch_holds_the_function_on_discs_up_to_their_rims():
-    def exponentials(points, p):
-        return [(s * p).exp() for s in points]
+    def exponentials(s, p):
+        return (s * p).exp()
 
     made = patch(exponentials, 1 + 2j, 0.125, 2.0, 0.125)
     assert made is not None
@@ -87,7 +91,7 @@ def test_a_patch_holds_the_function_on_discs_up_to_their_rims():
 
 def test_the_error_of_a_patch_holds_where_its_bound_is_nearly_attained():
     # 1/(4.6 - p) is finite on a disc of 4 alone, so that coefficients fall as slowly as the bound allows.
-    made = patch(lambda points, p: [1 / (acb(4.6) - p) for _ in points], 0j, 1.0, 0.0, 1.0)
+    made = patch(lambda s, p: s * 0 + 1 / (acb(4.6) - p), 0j, 1.0, 0.0, 1.0)
     assert made is not None
     for p in np.exp(2j * pi * np.arange(7) / 7):
         value = sum(c * p**k for k, c in enumerate(made.coefficients[0]))
@@ -96,8 +100,8 @@ def test_the_error_of_a_patch_holds_where_its_bound_is_nearly_attained():
 
 def test_a_patch_is_as_wide_as_discs_of_both_and_its_error():
     # |s + 2 p - v| may be 0 up to v = 0.1 + 2*0.05, and s^2/2 + p s turns up to s = 0.1 + 0.05.
-    line = patch(lambda points, p: [s + 2 * p for s in points], 0j, 1.0, 0.0, 1.0)
-    bowl = patch(lambda points, p: [s * s / 2 + p * s for s in points], 0j, 1.0, 0.0, 1.0)
+    line = patch(lambda s, p: s + 2 * p, 0j, 1.0, 0.0, 1.0)
+    bowl = patch(lambda s, p: s * s / 2 + p * s, 0j, 1.0, 0.0, 1.0)
     assert line is not None and bowl is not None
     for share, is_open in [(0.999, True), (1.001, False)]:
         assert line.on(share * 0.2, 0.1, 0.0, 0.05)[0].may_vanish is is_open
@@ -105,7 +109,7 @@ def test_a_patch_is_as_wide_as_discs_of_both_and_its_error():
     # Off the middle of both, where s + 2 p = 0.
     assert line.on(-0.6 + 0j, 0.0, 0.3, 0.0)[0].may_vanish
     assert not line.on(0.6 + 0j, 0.0, 0.3, 0.0)[0].may_vanish
-    steep = patch(lambda points, p: [s + 1 / (4.6 - p) - 1 / acb(4.6) for s in points], 0j, 1.0, 0.0, 1.0)
+    steep = patch(lambda s, p: s + 1 / (4.6 - p) - 1 / acb(4.6), 0j, 1.0, 0.0, 1.0)
     assert steep is not None
     near = steep.error / 2 * 4.6**2  # where its value is half of the error
     assert steep.on(0j, 0.0, near, 0.0)[0].may_vanish
@@ -113,8 +117,8 @@ def test_a_patch_is_as_wide_as_discs_of_both_and_its_error():
 
 
 def test_a_patch_tells_where_a_function_and_its_slope_vanish():
-    def square(points, p):
-        return [s * s + p for s in points]
+    def square(s, p):
+        return s * s + p
 
     made = patch(square, 0j, 1.0, 0.25, 0.5)
     assert made is not None
@@ -127,11 +131,11 @@ def test_a_patch_tells_where_a_function_and_its_slope_vanish():
 
 
 def test_a_patch_is_refused_where_a_function_has_a_pole():
-    def pole(points, p):
-        return [1 / (s - p) for s in points]
+    def pole(s, p):
+        return 1 / (s - p)
 
     assert patch(pole, 1j, 1.0, 0.0, 0.5) is None
-    assert patch(lambda points, _: [acb("nan") for _ in points], 1j, 1.0, 0.0, 0.5) is None
+    assert patch(lambda s, _: s * acb("nan"), 1j, 1.0, 0.0, 0.5) is None
 
 
 def test_poles_of_a_column_under_a_follower_load_meet_on_the_axis():
@@ -158,6 +162,22 @@ def test_a_belt_that_moves_buckles_where_its_stiffness_is_spent():
     assert abs(float(boundary.gain.mid()) - sqrt(1 + pi**2)) < 1e-10
     assert [float(w.mid()) for w in boundary.frequencies] == [0]
     assert [i.poles.word for i in found.proved.intervals] == ["marginal", "unstable"]
+
+
+def test_long_series_of_modes_are_those_of_the_matrix_exponential():
+    # Fundamental functions along a belt about s = 2 + 5 j: sums over four roots, and by exp(A l) at s + 1/8.
+    model = loads(BELT).resolved
+    tf, (factor,) = characteristic(model, ("v",), ((Fraction(3), Fraction(4)),)).at_rest
+    with precision(128), series_terms(24):
+        kernels = characteristic(model, ("v",), ((Fraction(3), Fraction(4)),)).kernels(
+            tf, ((Fraction(3),) * 2,)
+        )
+        by_modes = replace(kernels, expands_modes=True)
+        series = by_modes.polynomial(factor, by_modes.at(acb_series([acb(2, 5), 1], 24)))
+        by_matrix = replace(kernels, is_modal=False)
+        value = by_matrix.polynomial(factor, by_matrix.at(acb(2.125, 5)))
+        total = sum((series[k] / acb(8) ** k for k in range(24)), acb(0))
+    assert abs(complex(total) / complex(value) - 1) < 1e-14
 
 
 def test_up_to_a_frequency_a_chart_is_refused():
