@@ -147,7 +147,8 @@ def bind(
     hidden = [HiddenFactor(f, e) for f, e in shared.factors if any(degree_in(f, i) for i in varying)]
     # Numbers in place of names only slow the search for roots of waves, where nothing cancels by its value.
     is_other = hidden or (tf.hidden and not tf.kernels)
-    if is_other and used and not varied and tf.solve is not None:
+    has_symbols = any(not p.is_imaginary for p in used)
+    if is_other and has_symbols and not varied and tf.solve is not None:
         # A difference of parameters that is zero connects nothing, and subsystems that are equal are one.
         with suppress(ModelError):
             return _derived_with_numbers(tf, exact, every)

@@ -201,3 +201,25 @@ def test_over_two_parameters_waves_with_complex_coefficients_are_refused():
     model = symflex.loads(SHAFT.format(equation="w'''' + c*s*w + c_i*(s - j*W)*w", **VISCOUS))
     with pytest.raises(ModelError, match="waves that have complex coefficients"):
         model.stability(over=("W", "c"), ranges={"W": (14, 15), "c": (1, 2)})
+
+
+def test_a_pole_that_passes_0_is_at_0_once():
+    # With damping inside alone, seen from the shaft: m (s + j W)^2 + c_i s + k is 0 at s = 0 where W^2 = k/m.
+    found = rotor("m*(s + j*W)^2*z + c_i*s*z + k*z = F").stability(over="W", limits=(0, 1000))
+    assert ends(found) == [(pytest.approx(NATURAL, rel=1e-13), [0.0], 1)]
+
+
+def beside(equation: str) -> symflex.Model:
+    """Return a damped body beside another unknown, which no transfer function sees."""
+    return symflex.Model(
+        parameters=ROTOR | {"W": "300 rad/s"},
+        equations={"unknowns": ["z", "y"], "equations": [equation, "c_e*s*z + k*z = F"]},
+        inputs={"F": {"unit": "N"}},
+        outputs={"Z": "z"},
+    )
+
+
+def test_a_hidden_rotor_meets_the_axis_on_its_own_side():
+    found = beside("m*s^2*y + c_i*(s - j*W)*y + k*y = 0").stability(over="W", limits=(0, 1000))
+    assert found.certified and found.is_stable
+    assert ends(found) == [(pytest.approx(NATURAL, rel=1e-13), [pytest.approx(NATURAL, rel=1e-13)], 1)]

@@ -18,6 +18,7 @@ from symflex.balls import precision, series_terms
 from symflex.errors import UsageError
 from symflex.loops.over import characteristic
 from symflex.loops.patches import patch
+from symflex.loops.up_to import Path
 
 BECK, BECK_OMEGA = 20.0509536189737, 11.0155576409229  # EI/l^2, rad/s
 
@@ -249,6 +250,36 @@ def test_where_waves_are_ever_shorter_nothing_is_decided(limits):
     assert (first.poles.right, first.poles.axis) == (0, 0)
     assert 0.6 < float(first.high.mid()) < 0.9 and float(first.high.rad()) < 1e-12
     assert any("loses its highest derivative" in reason for reason in found.proved.reasons)
+
+
+@pytest.mark.parametrize(
+    ("kind", "signs"), [("axis", (1,)), ("axis", (-1, 1)), ("arc", (1,)), ("arc", (-1, 1))]
+)
+def test_a_piece_of_a_path_reaches_no_farther_from_its_middle_than_its_ends(kind, signs):
+    path = Path(kind, Fraction(3), 4, signs)
+    for sign in signs:
+        low, high = sorted((Fraction(sign, 4), Fraction(sign, 2)))
+        middle = path.middle((low, high))
+        farthest = max(float(abs(path.at(x) - middle).upper()) for x in (low, high))
+        assert farthest <= path.reach((low, high)) <= 1.02 * farthest
+        assert all(path.box((low, high)).contains(path.at(x).mid()) for x in (low, high))
+
+
+def test_a_beam_that_no_function_sees_is_counted_too():
+    # By hand: 3.516 sqrt(EI/rhoA)/l^2 = 5.6 Hz of the first, 2.8 Hz of the other; the next are beyond 15 Hz.
+    text = """symflex = 1
+        parameters = { l = "1 m" }
+        [elements]
+        wall = { type = "fixed", at = "a" }
+        seen = { type = "beam", between = ["a", "b"], EI = "100 N*m^2", rhoA = "1 kg/m", l = "l" }
+        other = { type = "beam", between = ["a", "c"], EI = "100 N*m^2", rhoA = "4 kg/m", l = "l" }
+        [inputs]
+        F = { force = "b.y" }
+        [outputs]
+        Y = "b.y"
+        """
+    found = loads(text).stability(over="l", limits=(0.95, 1.05), up_to_hz=10, digits=8)
+    assert [(each.poles.right, each.poles.axis) for each in found.proved.intervals] == [(0, 4)]
 
 
 CLAMPED = """

@@ -84,3 +84,33 @@ def test_functions_of_two_lengths_or_of_another_kind_are_not_known_to_be_reverse
     for other in (replace(used, length=used.length * 2), replace(used, function="exp")):
         table = replace(tf.kernels, kernels=tuple(other if k is used else k for k in kernels))
         assert not is_reversed(part, table)
+
+
+TURNING = "-(1 - v^2)*w'' + 2*v*(s + j*W)*w' + (s + j*W)^2*w"
+
+
+@pytest.mark.parametrize(("equation", "expected"), [(TURNING, True), (TURNING + " + c*s*w", False)])
+def test_a_string_that_moves_is_reversed_in_turning_axes_if_j_turns_with_s(equation, expected):
+    # Its poles are -j W + j n pi (1 - v^2); damping takes them off the axis.
+    model = loads(
+        f"""symflex = 1
+        parameters = {{ v = 0.5, W = 2, c = 1 }}
+        inputs = {{ y_0 = {{}} }}
+        outputs = {{ Y = "w(1/2)" }}
+        [fields.w]
+        domain = ["0", "1"]
+        equation = "{equation} = 0"
+        conditions = ["w(0) = 0", "w(1) = y_0"]
+        """
+    )
+    ends = ((Fraction(1, 4), Fraction(3, 4)),)
+    tf, factors = characteristic(model, ("v",), ends, has_complex_waves=True).at_rest
+    assert [is_reversed(Factored.polynomial(tf.ratio.ring, f), tf.kernels) for f in factors] == [expected]
+
+
+def test_what_is_odd_in_s_is_reversed_but_for_its_sign():
+    model = loads(MOVING.format(odd="2*v*s", start=PINNED, end=HELD))
+    tf, (factor,) = characteristic(model, ("v",), ((Fraction(1), Fraction(3)),)).at_rest
+    s = tf.ratio.ring.context.gen(0)
+    assert is_reversed(Factored(tf.ratio.ring, Fraction(1), ((s * factor, 1),)), tf.kernels)
+    assert not is_reversed(Factored(tf.ratio.ring, Fraction(1), (((s + 1) * factor, 1),)), tf.kernels)
