@@ -19,10 +19,12 @@ from symflex.model import Model, load_with
 from symflex.model.loss_factors import check_causal
 from symflex.model.spec import read
 from symflex.options import FitOptions, MeasureOptions
-from symflex.roots import Band
+from symflex.roots import Band, PoleZeroMap
 from symflex.roots.locate import locate
 from symflex.transfer import BoundTransferFunction
 from symflex.transfer.of_model import derive_bound, pick_pairs
+
+CANCELS = 5e-3  # distance of a fitted root from one of the base, over its size, within which it undoes that
 
 
 def fit(measured: Sequence[MeasuredResponse], given: FitOptions) -> ResonanceFit:
@@ -42,13 +44,44 @@ def fit(measured: Sequence[MeasuredResponse], given: FitOptions) -> ResonanceFit
                 raise refused(message, f"responses: {', '.join(names)}")
         measured = [response for response in measured if not given.tfs or response.name in given.tfs]
         return fit_resonances(measured, None, given)
-    return fit_resonances(measured, _bases(len(measured), given.base, given), replace(given, slope=None))
+    model = load_with(read(Path(given.base)), {}, allow_outside=given.allow_outside)
+    bounds = _bounds(len(measured), model, given)
+    bases = _bases(bounds, model, given.base, given)
+    found = fit_resonances(measured, bases, replace(given, slope=None))
+    return replace(found, poor=(*_contradicted(found, bounds), *found.poor))
 
 
-def _bases(count: int, path: str | Path, given: FitOptions) -> list[Base]:
-    """Return what the resonances of each response are multiplied by."""
-    model = load_with(read(Path(path)), {}, allow_outside=given.allow_outside)
-    taken, folders = tuple(p.name for p in model.parameters), (Path(path).parent, *given.allow_outside)
+def _contradicted(found: ResonanceFit, bounds: Sequence[BoundTransferFunction]) -> list[str]:
+    """Return where a fitted pole or zero undoes one of the base: the data show no such root there."""
+    modes, (low, high) = found.resonances, (end / (2 * np.pi) for end in found.problem.band)
+    poles = modes.omega_p * (-modes.zeta_p + 1j * np.sqrt(np.maximum(1 - modes.zeta_p**2, 0)))
+    said = []
+    located: dict[str, PoleZeroMap] = {}
+    for r, bound in enumerate(bounds):
+        if bound.name not in located:
+            band = Band(Fraction(low), Fraction(high))
+            located[bound.name] = locate(bound, None if bound.is_rational else band)
+        base, usable = located[bound.name], modes.has_zeros[r] & (modes.omega_z[r] > 0)
+        zeta = modes.zeta_z[r, usable]
+        zeros = modes.omega_z[r, usable] * (-zeta + 1j * np.sqrt(np.maximum(1 - zeta**2, 0)))
+        pairs = (("pole", poles, "zero", base.zeros), ("zero", zeros, "pole", base.poles))
+        for own, fitted, other, roots in pairs:
+            for root in roots:
+                at = complex(root.re, root.im)
+                if at.imag <= 0 or not fitted.size:
+                    continue
+                nearest = fitted[int(np.argmin(np.abs(fitted - at)))]
+                if abs(nearest - at) < CANCELS * abs(at):
+                    here, there = (f"{abs(x) / (2 * np.pi):.5g} Hz" for x in (nearest, at))
+                    said.append(
+                        f"the fitted {own} at {here} cancels a {other} of the base at {there}: the data "
+                        "contradict the values of the base; fit them with --model and --free"
+                    )
+    return list(dict.fromkeys(said))
+
+
+def _bounds(count: int, model: Model, given: FitOptions) -> list[BoundTransferFunction]:
+    """Return the function that the resonances of each response are multiplied by."""
     pairs = pick_pairs(model, given.tfs)[: None if given.tfs else 1]
     if len(pairs) == 1:
         pairs = pairs * count
@@ -56,6 +89,14 @@ def _bases(count: int, path: str | Path, given: FitOptions) -> list[Base]:
         message = f"{count} responses and {len(pairs)} transfer functions of the base"
         raise refused(message, "name one with --tf for each response")
     bounds = dict(zip(pairs, derive_bound(model, pairs), strict=True))
+    return [bounds[pair] for pair in pairs]
+
+
+def _bases(
+    bounds: Sequence[BoundTransferFunction], model: Model, path: str | Path, given: FitOptions
+) -> list[Base]:
+    """Return what the resonances of each response are multiplied by."""
+    taken, folders = tuple(p.name for p in model.parameters), (Path(path).parent, *given.allow_outside)
 
     def base_of(bound: BoundTransferFunction) -> Base:
         def function(omega: npt.NDArray[Any]) -> npt.NDArray[np.complex128]:
@@ -63,7 +104,7 @@ def _bases(count: int, path: str | Path, given: FitOptions) -> list[Base]:
 
         return Base(function, bound.name, str(path), bound.source.unit, taken=taken, folders=folders)
 
-    return [base_of(bounds[pair]) for pair in pairs]
+    return [base_of(bound) for bound in bounds]
 
 
 def measure(model: Model, given: MeasureOptions) -> MeasuredResponse:

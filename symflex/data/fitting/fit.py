@@ -459,18 +459,18 @@ def _said_of_lines(fit: ResonanceFit) -> list[str]:
     return warnings
 
 
-def said_of_units(fit: ResonanceFit) -> list[str]:
-    """Return where data and base are not known to have one unit."""
+def said_of_units(fit: ResonanceFit, what: str = "base") -> list[str]:
+    """Return where data and base, or ``what`` stands for it, are not known to have one unit."""
     said = []
     for measured, base in zip(fit.measured, fit.bases, strict=True):
         if not base.path or not base.unit:
             continue
         if not measured.unit:
             said.append(
-                f"the data of {measured.name} have no unit, and are taken in that of the base, {base.unit}"
+                f"the data of {measured.name} have no unit, and are taken in that of the {what}, {base.unit}"
             )
         elif ratio_of_units(measured.unit, base.unit) not in ("1", "rad", "1/rad"):
-            words = f"the data of {measured.name} are in {measured.unit}, and the base in {base.unit}"
+            words = f"the data of {measured.name} are in {measured.unit}, and the {what} in {base.unit}"
             said.append(f"{words}: the gain of the fit has the quotient")
     return list(dict.fromkeys(said))
 

@@ -983,7 +983,7 @@ def _contradicted(fit: ParameterFit) -> list[str]:
 def _warnings(fit: ParameterFit) -> tuple[str, ...]:
     """Return what to be careful about."""
     low, high = (end / (2 * np.pi) for end in fit.residual.problem.band)
-    said = said_of_units(fit.residual)
+    said = said_of_units(fit.residual, "specification")
     for r in range(len(fit.residual.measured)):
         excluded = fit.residual.left_out(r)
         if excluded.size and not fit.in_time:

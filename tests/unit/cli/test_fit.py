@@ -312,3 +312,51 @@ def test_responses_to_one_force_give_mass_normalised_mode_shapes(shell, tmp_path
     refused = shell("fit", *files, "--driving", "c/F")
     assert refused.code == 2
     assert refused.err.startswith("error[SF902]")
+
+
+@pytest.mark.slow
+def test_a_base_whose_values_the_data_contradict_is_said(shell):
+    # the tip's mass is 3 % larger than in the base: its zero, sqrt(k/m_2), moves from 35.588 to 35.064 Hz
+    base = """
+symflex = 1
+parameters = { m_1 = "2 kg", m_2 = "0.4 kg", k = "20 kN/m", b = "2 N*s/m" }
+[equations]
+unknowns = ["x", "y"]
+equations = ["m_1*s^2*x + (b*s + k)*(x - y) = F", "m_2*s^2*y + (b*s + k)*(y - x) = 0"]
+[inputs]
+F = {}
+[outputs]
+X = "x"
+"""
+    f = np.linspace(20, 50, 150)
+    s = 2j * np.pi * f
+    z, m_2 = 20e3 + 2 * s, 0.412
+    noise = np.random.default_rng(1).standard_normal((2, f.size))
+    h = (m_2 * s**2 + z) / ((2 * s**2 + z) * (m_2 * s**2 + z) - z**2)
+    h = h * (1 + 0.002 * (noise[0] + 1j * noise[1]))
+    rows = [f"{a},{b.real!r},{b.imag!r}" for a, b in zip(f.tolist(), h.tolist(), strict=True)]
+    (shell.folder / "base.toml").write_text(base)
+    (shell.folder / "data.csv").write_text("\n".join(["# tf: X/F", "frequency_hz,re,im", *rows]) + "\n")
+    done = shell("fit", "data.csv", "--base", "base.toml", "--modes", "2", "--json").json
+    assert done["poor"]
+    assert any("cancels a zero of the base at 35.5" in reason for reason in done["poor_because"])
+    (fitted,) = shell("fit", "data.csv", "--model", "base.toml", "--free", "m_2", "--json").json["parameters"]
+    assert abs(fitted["value"] - 0.412) < 3 * fitted["standard_error"]
+
+
+def test_a_fitted_specification_has_values_errors_and_spreads(shell):
+    example = ROOT / "derivations" / "measured"
+    arguments = ("fit", example / "data" / "motor.csv", "--model", example / "motor.toml", "--free")
+    assert shell(*arguments, "R,k,J", "-o", "fitted.toml").code == 0
+    model = symflex.load(shell.folder / "fitted.toml")
+    found = {p.name: p for p in model.parameters}
+    # the first line of the data has the values
+    for name, true in {"R": 1.2, "k": 0.05, "J": 3e-5}.items():
+        p = found[name]
+        assert abs(float(p.value.rational) - true) < 2 * float(p.spread.rational)
+        assert "; fitted to SYNTHETIC data, omega/u, standard error " in p.doc
+    assert found["L"].spread is None
+    again = shell(*arguments, "R,L,k,J,b", "-o", "not.toml")
+    assert again.code == 4
+    assert "NOT IDENTIFIABLE" in again.out
+    assert not (shell.folder / "not.toml").exists()
