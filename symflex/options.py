@@ -584,7 +584,13 @@ WINDOW_OF_DATA: Final = {
 class FitOptions:
     """Options of ``symflex fit``. Python gives data in place of their paths, too."""
 
-    data: Sequence[object] = option((), nargs=-1, required=True, is_path=True)
+    data: Sequence[object] = option((), nargs=-1, is_path=True)
+    records: str = option(
+        "",
+        "--records",
+        metavar="u=FILE,y=FILE",
+        help="A time record with one channel a file, in place of DATA: u is the input, y an output.",
+    )
     base: str | Path | None = option(
         None, "--base", is_path=True, help="Specification whose transfer function the resonances multiply."
     )

@@ -166,14 +166,19 @@ def _estimate(given: FitOptions | MeasureOptions) -> Estimate:
 
 def _read(given: FitOptions) -> list[MeasuredResponse]:
     """Return the responses of all files, and print what was guessed of each."""
-    from symflex.data.measurement import read_measurement
+    from symflex.data.measurement import read_measurement, read_records
 
     read: list[MeasuredResponse] = []
     if given.first_hz and not given.step_hz:
         raise refused("--from gives the first frequency and needs --step")
     axis = (given.first_hz, given.step_hz) if given.step_hz else None
-    for path in given.data:
-        responses = read_measurement(str(path), given.columns, _estimate(given), axis)
+    if bool(given.records) == bool(given.data):
+        raise refused("give DATA, or --records u=FILE,y=FILE", "as in: symflex fit data.csv")
+    for path in [given.records] if given.records else given.data:
+        if given.records:
+            responses = read_records(given.records, given.columns, _estimate(given))
+        else:
+            responses = read_measurement(str(path), given.columns, _estimate(given), axis)
         for guess in dict.fromkeys(guess for one in responses for guess in one.guesses):
             note(f"{path}: {guess}")
         read += responses

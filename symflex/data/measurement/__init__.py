@@ -7,6 +7,7 @@ from symflex.data.measurement.files import (
     measurement_bytes,
     prepared,
     read_measurement,
+    read_records,
     record_in_time,
     responses_in_time,
 )

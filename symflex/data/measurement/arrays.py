@@ -38,6 +38,7 @@ from symflex.data.measurement.measured_response import (
     window_of,
 )
 from symflex.data.measurement.text_table import MAX_CELLS, number
+from symflex.data.measurement.universal_file import MARK
 from symflex.errors import DataError, Diagnostic, refused
 
 Array = npt.NDArray[Any]
@@ -74,7 +75,9 @@ _OCTAVE_VARIABLE: Final = re.compile(
 
 
 def format_of(name: str, data: bytes) -> str:
-    """Return the end of a file's name, or that of MATLAB's for what Octave saves as text."""
+    """Return the end of a file's name, or that of its format where its begin shows another."""
+    if re.match(rb"[\r\n]*" + MARK + rb"[ \t]*\r?\n", data):
+        return ".uff"  # no table begins so
     return ".mat" if data.startswith(OCTAVE) else Path(name).suffix.lower()
 
 

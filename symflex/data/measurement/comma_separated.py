@@ -67,7 +67,7 @@ NEAR: Final = 60  # lines above the numbers among which the names of columns are
 def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[MeasuredResponse, ...]:
     """Read responses from text in columns; a single one is called ``stem`` when the file gives no name."""
     table = TextTable.of(name, data)
-    turned = _turned(table) or _listed(table) or _qucs(table) or _stepped(table) or _citi(table)
+    turned = _turned(table) or _qucs(table) or _stepped(table) or _citi(table)
     if turned is not None:
         text, origin, said = turned
         try:
@@ -108,18 +108,6 @@ def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[Me
 
 def _place(places: Mapping[str, Callable[[int], Span | None]], index: int, kind: str) -> Span | None:
     return places[kind](index)
-
-
-def _listed(table: TextTable) -> _Rewritten | None:
-    """Return SPICE's raw file in text, which lists values one below the other, as columns; else None."""
-    head, _, values = table.source.text.partition("\nValues:\n")
-    names = re.findall(r"^[ \t]*\d+[ \t]+(\S+)", head.partition("\nVariables:\n")[2], re.M)
-    cells = values.split()
-    width = len(names) + 1
-    if not names[1:] or not cells or len(cells) % width:
-        return None
-    rows = [names, *(cells[i + 1 : i + width] for i in range(0, len(cells), width))]
-    return "".join("\t".join(row) + "\n" for row in rows).encode(), lambda _: None, ()
 
 
 def _qucs(table: TextTable) -> _Rewritten | None:

@@ -6,7 +6,6 @@ What a user knows of the responses, and their files do not say, is added afterwa
 from __future__ import annotations
 
 import os
-import re
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -22,13 +21,14 @@ from symflex.data.measurement.comma_separated import read_columns, with_axis
 from symflex.data.measurement.estimate import Estimate, responses_of
 from symflex.data.measurement.input_signal import ARRAYS
 from symflex.data.measurement.measured_response import MAX_BYTES, MOST_AVERAGES, MeasuredResponse, window_of
-from symflex.data.measurement.record import TimeRecord, read_record
+from symflex.data.measurement.record import TimeRecord, joined, read_record
+from symflex.data.measurement.spice_raw import is_raw, table_of_raw
 from symflex.data.measurement.touchstone import read_touchstone
 from symflex.data.measurement.universal_file import (
     COHERENCE,
     FREQUENCY_AXIS,
-    MARK,
     RESPONSE,
+    UNIVERSAL,
     read_universal_file,
 )
 from symflex.errors import DataError, Diagnostic, refused
@@ -37,11 +37,11 @@ from symflex.model.spec.read import read_file
 
 WORKBOOKS: Final = (".xlsx", ".xlsm")
 READERS: Mapping[str, Callable[[str, bytes, str, str], tuple[MeasuredResponse, ...]]] = {
-    **dict.fromkeys((".csv", ".txt", ".dat", ".tsv", ".frd", ".zma"), read_columns),
+    **dict.fromkeys((".csv", ".txt", ".dat", ".tsv", ".frd", ".zma", ".raw"), read_columns),
     **dict.fromkeys((".s1p", ".s2p"), read_touchstone),
     **dict.fromkeys(ARRAYS, read_arrays),
     **dict.fromkeys(WORKBOOKS, read_columns),
-    **dict.fromkeys((".uff", ".unv", ".uf"), read_universal_file),
+    **dict.fromkeys(UNIVERSAL, read_universal_file),
 }
 """Readers by the end of a file's name.
 
@@ -108,8 +108,6 @@ def read_measurement(
     if not data.strip():
         raise DataError(Diagnostic("SF605", f"'{name}' is empty"))
     suffix = format_of(name, data)
-    if re.match(rb"[\r\n]*" + MARK + rb"[ \t]*\r?\n", data):
-        suffix = ".uff"  # whatever the file is called, no table begins so
     if axis is not None and suffix in ARRAYS:
         arrays = arrays_in(name, data, suffix)
         size = max((max(a.shape, default=0) for a in arrays.values()), default=0)
@@ -117,7 +115,7 @@ def read_measurement(
         return responses_of_arrays(arrays, name, Path(name).stem, columns)
     if axis is not None:
         return read_columns(name, with_axis(name, data, *axis), Path(name).stem, columns)
-    if READERS.get(suffix, read_columns) in (read_columns, read_arrays):
+    if READERS.get(suffix, read_columns) in (read_columns, read_arrays, read_universal_file):
         record = read_record(name, data, Path(name).stem, columns)
         if record is not None:
             return responses_of(record, estimate or Estimate())
@@ -133,11 +131,16 @@ def read_measurement(
 
 
 def _contents(name: str) -> bytes:
-    """Return the bytes of a file; of a workbook, the text of its fullest sheet."""
+    """Return the bytes of a file; of a workbook and of SPICE's raw files, their table as text."""
     data = read_file(name, MAX_BYTES)
     if len(data) > MAX_BYTES:
         raise DataError(Diagnostic("SF607", f"'{name}' is larger than {MAX_BYTES} bytes"))
     suffix = Path(name).suffix.lower()
+    if is_raw(data):
+        try:
+            return table_of_raw(data)
+        except ValueError as error:
+            raise DataError(Diagnostic("SF601", f"'{name}' is not a raw file of SPICE: {error}")) from None
     return arrays_in(name, data, suffix)[""].tobytes() if suffix in WORKBOOKS else data
 
 
@@ -152,6 +155,28 @@ def responses_in_time(
     """Return the responses of a time record, ``None`` if the columns of a file do not say time."""
     record = record_in_time(path, columns)
     return None if record is None else responses_of(record, estimate or Estimate())
+
+
+def read_records(
+    files: str, columns: str = "", estimate: Estimate | None = None
+) -> tuple[MeasuredResponse, ...]:
+    """Return the responses of a time record that has one channel a file: ``u=A.CSV,y=B.CSV``."""
+    parts = [part.partition("=") for part in files.split(",")]
+    kinds = [kind.strip().rstrip("0123456789") for kind, *_ in parts]
+    if (
+        not {*kinds} <= {"u", "y"}
+        or kinds.count("u") > 1
+        or "y" not in kinds
+        or not all(p for *_, p in parts)
+    ):
+        raise refused(f"--records {files[:60]}: name at most one u, and one y or more", "u=A.CSV,y=B.CSV")
+    read: list[TimeRecord] = []
+    for _, _, path in parts:
+        one = record_in_time(path.strip(), columns)
+        if one is None or one.input is not None or len(one.outputs) != 1:
+            raise refused(f"'{path}' is no time record of one channel", "--columns t,y names its columns")
+        read.append(one)
+    return responses_of(joined(read, kinds), estimate or Estimate())
 
 
 def _averaged(responses: Sequence[MeasuredResponse]) -> list[MeasuredResponse]:
@@ -269,6 +294,7 @@ def universal_bytes(response: MeasuredResponse) -> bytes:
     lines = response.frequency_hz
     remarks = [f"averages={response.averages:g}"] if response.averages else []
     remarks += [f"window={response.window}"] if response.window else []
+    remarks += [f"unit={response.unit}"] if response.unit else []
     header: dict[str, object] = {
         **dict.fromkeys(("id3", "id5", "rsp_ent_name", "ref_ent_name"), "NONE"),
         **dict.fromkeys(("binary", "abscissa_spacing"), 0),

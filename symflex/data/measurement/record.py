@@ -44,6 +44,7 @@ from symflex.data.measurement.input_signal import (
 from symflex.data.measurement.likely_readings import is_time
 from symflex.data.measurement.measured_response import MAX_LINES, are_few, in_si, listed_names, ratio_of_units
 from symflex.data.measurement.text_table import COMMENTS, SIGNS, TextTable, bare, cut, number
+from symflex.data.measurement.universal_file import UNIVERSAL, signals_in
 from symflex.errors import DataError, Diagnostic, refused
 
 Real = npt.NDArray[np.float64]
@@ -53,6 +54,7 @@ BEGIN: Final = 4  # samples by which it is judged where a record begins
 LONG: Final = 2.0  # sampling time [s] from which a time without unit may be in milliseconds or microseconds
 FEWEST_SAMPLES: Final = 32  # fewer make no response
 JITTER: Final = 0.02  # share of the sampling time by which a clock's last digit may move times
+MOST_GAPS: Final = 0.02  # share of steps up to which they are gaps, and beyond which steps differ
 UNEVEN: Final = 0.5  # the same, from which a sample is missing
 SATURATED: Final = 4  # samples in a row at an end of a channel's range, from which it looks cut off
 LEVELS: Final = 10  # different values of a step or of a square wave, and of nothing else
@@ -61,6 +63,7 @@ MOST_CHANNELS: Final = 64  # columns of a matrix that are channels
 SAME: Final = 1 - 1e-12  # correlation from which a channel is a multiple of another
 
 _INPUT = re.compile(
+    r"(?:v\(\w*in\w*\)|f_\d+n?[rxyz]*)|"
     r"(?:u|u_?est|u_?val|v_?in|u_?in|in|inp|f|exc|stim|ref|r|cmd|dac|pwm|duty)(?:[ _]?\d+)?|"
     r"(?:\w+[ _])?(?:input|eingang|entr[eé]e|force|kraft|hammer|impact|excitation|anregung|drive|actuator|"
     r"stimulus|reference|command|cmd|desired|target|set[ _]?point|torque|moment|effort|throttle|esc)"
@@ -95,7 +98,8 @@ _SPEED = re.compile(r"vel|speed|gyro|rate|geschw|vitesse|drehz|angular(?!.?fr)",
 _SIGNALS: Final = ("f", "omega", "w", "\u03c9", "angular")
 """Words for frequencies that signals have, too."""
 _SPECTRUM = re.compile(r"\b(?:fft|psd)\b|spectrum|spectral", re.I)
-_IN_BRACKETS = re.compile(r"\s*[\[(](.*?)[\])]\s*$")
+_IN_BRACKETS = re.compile(r"\s*[\[(]([^\[\](){}]*(?:\([^()]*\)[^\[\]()]*)?)[\])]\s*$")
+_NODE = re.compile(r"([VI])\w?\(([^()]+)\)", re.I)  # of SPICE: V(out), I(R1), Id(M1)
 _BEHIND = re.compile(r"(?<=\w)(?:\s+in\s+|,\s*)(\S+)$")
 _SUFFIX = re.compile(
     r"(?<=\w)_(mm|um|nm|mV|uV|kV|mA|kN|mN|Nm|deg|rpm|rad|kPa|bar|N|V|mm_s|m_s2?|rad_s|deg_s)$"
@@ -156,8 +160,10 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
     if asked and not (interval or any(re.fullmatch(r"(?:t|time)(?:[_=].*)?", word, re.I) for word in words)):
         return None
     suffix = format_of(name, data)
-    if suffix in ARRAYS:
-        arrays = with_axes(arrays_in(name, data, suffix))
+    if suffix in ARRAYS or suffix in UNIVERSAL:
+        arrays = signals_in(name, data) if suffix in UNIVERSAL else with_axes(arrays_in(name, data, suffix))
+        if not arrays:
+            return None
         return _asked_arrays(arrays, words, interval, name, stem) if asked else _of_arrays(arrays, name, stem)
     if not asked and not _may_be_record(data):
         return None
@@ -173,6 +179,35 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
     if asked:
         return _asked_columns(table, first, words, interval, stem)
     return _of_table(table, first, stem, is_timed=timed is not data)
+
+
+def joined(records: Sequence[TimeRecord], kinds: Sequence[str]) -> TimeRecord:
+    """Return one record of several with one channel each, an input ``u`` and outputs ``y``."""
+    step = records[0].step_s
+    for one in records:
+        if abs(one.step_s - step) > JITTER * step:
+            message = (
+                f"'{one.name}' has a sample every {one.step_s:.6g} s, '{records[0].name}' every {step:.6g} s"
+            )
+            raise DataError(Diagnostic("SF604", message, None, "record the channels together"))
+    names = [one.outputs[0][0] for one in records]
+    names = names if len(set(names)) == len(names) else [one.name for one in records]
+    size = min(one.outputs[0][1].size for one in records)
+    channels = [(name, one.outputs[0][1][:size]) for name, one in zip(names, records, strict=True)]
+    units = {name: one.units.get(one.outputs[0][0], "") for name, one in zip(names, records, strict=True)}
+    said = [guess for one in records for guess in one.guesses]
+    said.append("the channels are taken as sampled at the same times")
+    if any(one.outputs[0][1].size > size for one in records):
+        said.append(f"the first {size} samples of each are used")
+    by_kind = list(zip(kinds, channels, strict=True))
+    return TimeRecord(
+        names[kinds.index("y")] if kinds.count("y") == 1 else "records",
+        step,
+        tuple(channel for kind, channel in by_kind if kind == "y"),
+        next((channel for kind, channel in by_kind if kind == "u"), None),
+        tuple(dict.fromkeys(said)),
+        {name: unit for name, unit in units.items() if unit},
+    )
 
 
 def _width(table: TextTable, first: int, names: Sequence[str]) -> int:
@@ -339,6 +374,8 @@ def _units_below(table: TextTable, first: int, names: Sequence[str]) -> list[str
 def _with_unit(cell: str, style: str) -> tuple[str, str]:
     """Return a name and the unit that is written behind it, as in ``x [mm]``, ``x in mm`` or ``x_mm``."""
     text = bare(cell)
+    if (node := _NODE.fullmatch(text)) and (in_si(node[2]) or ("", ""))[1] not in ("V", "A"):
+        return text, {"V": "V", "I": "A"}[node[1].upper()]
     if match := _IN_BRACKETS.search(text):
         return text[: match.start()].strip(), match[1].strip()
     match = _BEHIND.search(text) or _SUFFIX.search(text)
@@ -471,13 +508,14 @@ def _even(
     if np.all(np.abs(steps - mean) <= JITTER * mean):
         return float(f"{mean:.9g}"), False
     gaps = steps > (1 + UNEVEN) * step
-    if gaps.any():
+    if 0 < gaps.mean() <= MOST_GAPS:
         i = int(np.argmax(gaps))
         many = f" and {int(gaps.sum()) - 1} more" if gaps.sum() > 1 else ""
         guesses.append(f"samples are missing from {times[i]:.6g} to {times[i + 1]:.6g} s{many}: interpolated")
     elif np.max(np.abs(times - even)) > JITTER * step:
         spread = float(np.max(np.abs(steps / step - 1)))
-        guesses.append(f"the times are not even (off by up to {spread:.0%} of a step), and are interpolated")
+        much = f"off by up to {spread:.0%} of a step" if spread < 1 else "steps differ"
+        guesses.append(f"the times are not even ({much}), and samples are interpolated every {step:.4g} s")
     return step, True
 
 

@@ -15,6 +15,7 @@ from types import ModuleType
 from typing import Any, Final
 
 import numpy as np
+import numpy.typing as npt
 
 from symflex.data.measurement.column_meaning import ColumnMeaning, DataColumn
 from symflex.data.measurement.columns import assembled
@@ -29,12 +30,15 @@ from symflex.data.measurement.measured_response import (
 from symflex.errors import DataError, Diagnostic, refused
 from symflex.errors.optional import installed
 
+UNIVERSAL: Final = (".uff", ".unv", ".uf")  # ends of names
 MARK: Final = b"    -1"
 _MARKS: Final = re.compile(rb"    -1[^\S\n]*(?:\n|\Z)")
+_TYPES: Final = re.compile(rb"^ *58[bB ]?[^\n]*\n(?:[^\n]*\n){5} *(\d{1,5})", re.M)  # of functions
 HEADER_LINES: Final = 11  # records of a dataset 58 before its data
 RESPONSE, TRANSMISSIBILITY, COHERENCE, MULTIPLE_COHERENCE = 4, 5, 6, 26
 POWERS: Final = (2, 9)  # datasets 58, types of function: auto spectrum, power spectral density
-FREQUENCY_AXIS: Final = 18  # data type of an abscissa that is a frequency
+FREQUENCY_AXIS, TIME_AXIS = 18, 17  # data types of an abscissa that is a frequency, or a time
+TIME_RESPONSE = 1  # a type of function
 SPECIFIC_TYPES: Final = {
     8: ("X", "m"), 9: ("F", "N"), 11: ("V", "m/s"), 12: ("A", "m/s^2"), 13: ("F", "N"), 15: ("P", "Pa"),
 }  # fmt: skip
@@ -100,6 +104,43 @@ def read_universal_file(name: str, data: bytes, stem: str, asked: str = "") -> t
         message = f"'{name}' contains no frequency response: its datasets 58 are of the function types {held}"
         raise DataError(Diagnostic("SF602", message, None, "function type 4 is a frequency response"))
     return tuple(responses)
+
+
+def signals_in(name: str, data: bytes) -> dict[str, npt.NDArray[Any]]:
+    """Return signals in time and their times; none if the file has no signals, or frequency responses."""
+    places, kinds = _datasets(name, data)
+    types = {int(match[1]) for match in _TYPES.finditer(data)}
+    if (
+        not 0 < len(places) <= MAX_RESPONSES
+        or TIME_RESPONSE not in types
+        or types & {RESPONSE, TRANSMISSIBILITY}
+    ):
+        return {}
+    sets = _read(installed("pyuff"), name, data, places)
+    axes = {entry.get("abscissa_spec_data_type") for entry in sets if entry.get("func_type") == TIME_RESPONSE}
+    if any(entry.get("func_type") in (RESPONSE, TRANSMISSIBILITY) for entry in sets) or not axes <= {
+        TIME_AXIS,
+        0,
+        1,
+    }:
+        return {}
+    signals: dict[str, npt.NDArray[Any]] = {}
+    for entry in (entry for entry in sets if entry.get("func_type") == TIME_RESPONSE):
+        times, values = np.asarray(entry["x"]), np.asarray(entry["data"])
+        if signals and not np.array_equal(times, signals["time"]):
+            continue
+        title = str(entry.get("id1", "")).strip()
+        called = _end_name(entry, "rsp", "ordinate", "y") or (title if title != "NONE" else "")
+        called = called.replace(".", " ") or f"channel {len(signals) or 1}"
+        kind = int(entry.get("ordinate_spec_data_type", 0))
+        label = str(entry.get("ordinate_axis_units_lab", "")).strip()
+        unit = "" if label.lower() in ("", "none") else {"g": "g_n"}.get(label, label)
+        if not unit and kinds.get(164, SI) == SI:
+            unit = SPECIFIC_TYPES.get(kind, ("", ""))[1]
+        many = sum(key.partition(" [")[0].startswith(called) for key in signals)
+        called += f" {many + 1}" * bool(many)
+        signals |= {"time": times, called + f" [{unit}]" * bool(unit): values}
+    return signals
 
 
 def _datasets(name: str, data: bytes) -> tuple[list[_Place], dict[int, int]]:
@@ -185,8 +226,9 @@ def _response(
     title = str(entry.get("id1", "")).strip()
     note = "; ".join(t for k in ("id1", "id2", "id3", "id4", "id5") if (t := str(entry.get(k, "")).strip()))
     tf = title if "/" in title and " " not in title else _ends_name(entry) or stem
-    unit, guesses = _unit(entry, system)
     fields = dict(part.split("=", 1) for part in str(entry.get("id4", "")).split() if "=" in part)
+    written = fields.get("unit", "")
+    unit, guesses = (unit_of(written, location), ()) if written else _unit(entry, system)
     count = fields.get("averages", "")
     averages = float(count) if count.replace(".", "", 1).isdigit() and float(count) >= 1 else None
     window, is_synthetic = window_of(fields.get("window", "")), "synthetic" in note.lower()
@@ -199,14 +241,17 @@ def _response(
 
 def _ends_name(entry: Mapping[str, Any]) -> str:
     """Return ``A_2Z/F_1X`` for an acceleration in node 2 along Z over a force in node 1 along X."""
-    ends = []
-    for end, axis, unknown in (("rsp", "ordinate", "y"), ("ref", "orddenom", "u")):
-        node, direction = entry.get(f"{end}_node"), entry.get(f"{end}_dir")
-        if not isinstance(node, int) or not isinstance(direction, int) or node < 0 or not (node or direction):
-            return ""
-        letter, _ = SPECIFIC_TYPES.get(int(entry.get(f"{axis}_spec_data_type", 0)), (unknown, ""))
-        ends.append(f"{letter}_{node}{'n' * (direction < 0)}{DIRECTIONS.get(abs(direction), '')}")
-    return "/".join(ends)
+    ends = _end_name(entry, "rsp", "ordinate", "y"), _end_name(entry, "ref", "orddenom", "u")
+    return "/".join(ends) if all(ends) else ""
+
+
+def _end_name(entry: Mapping[str, Any], end: str, axis: str, unknown: str) -> str:
+    """Return what is measured, where and in which direction, as ``A_2Z``; empty if no place is given."""
+    node, direction = entry.get(f"{end}_node"), entry.get(f"{end}_dir")
+    if not isinstance(node, int) or not isinstance(direction, int) or node < 0 or not (node or direction):
+        return ""
+    letter, _ = SPECIFIC_TYPES.get(int(entry.get(f"{axis}_spec_data_type", 0)), (unknown, ""))
+    return f"{letter}_{node}{'n' * (direction < 0)}{DIRECTIONS.get(abs(direction), '')}"
 
 
 def _unit(entry: Mapping[str, Any], system: int) -> tuple[str, tuple[str, ...]]:

@@ -13,7 +13,13 @@ from scipy import signal
 
 import symflex
 from symflex.cli import run
-from symflex.data.measurement import Estimate, measurement_bytes, prepared, read_measurement
+from symflex.data.measurement import (
+    Estimate,
+    measurement_bytes,
+    prepared,
+    read_measurement,
+    read_records,
+)
 from symflex.data.measurement.record import read_record
 from symflex.errors import DataError, UsageError
 
@@ -528,3 +534,45 @@ def test_sweeps_that_are_cut_off_and_steps_at_uneven_times_are_seen(tmp_path):
     t = STEP * (np.arange(u.size) + 0.05 * np.random.default_rng(1).uniform(size=u.size))
     (found,) = read_measurement(written(tmp_path, u, y, times=t))
     assert "a step" in found.guesses[-1]
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # pyuff leaves files open
+def test_time_responses_of_a_universal_file_are_a_record(tmp_path):
+    pyuff = pytest.importorskip("pyuff")
+    for binary in (0, 1):
+        path = tmp_path / f"record{binary}.uff"
+        for node, kind, label, values in ((1, 13, "N", CHIRP), (2, 8, "mm", 1e3 * PUSHED)):
+            words = dict.fromkeys(("id1", "id2", "id3", "id4", "id5", "rsp_ent_name", "ref_ent_name"), "NONE")
+            entry = pyuff.prepare_58(
+                **words, binary=binary, func_type=1, rsp_node=node, rsp_dir=3, ref_node=0, ref_dir=0,
+                abscissa_spacing=1, abscissa_inc=STEP, abscissa_min=0.0, abscissa_spec_data_type=17,
+                ordinate_spec_data_type=kind, orddenom_spec_data_type=0, ordinate_axis_units_lab=label,
+                num_pts=values.size, data=values, x=np.arange(values.size) * STEP,
+            )  # fmt: skip
+            pyuff.UFF(str(path)).write_sets([entry], mode="add")
+        (found,) = read_measurement(path)
+        (plain,) = read_measurement(written(tmp_path, CHIRP, PUSHED))
+        assert found.name == "X_2Z/F_1Z"
+        assert found.unit == "m/N"
+        assert found.values == pytest.approx(plain.values, rel=1e-4)
+
+
+def test_channels_of_several_files_are_one_record(tmp_path):
+    t = np.arange(CHIRP.size) * STEP
+    for name, values in (("A.CSV", CHIRP), ("B.CSV", 1e3 * PUSHED)):
+        (tmp_path / name).write_text(oscilloscope(t, values), newline="")
+    (found,) = read_records(f"u={tmp_path / 'A.CSV'},y={tmp_path / 'B.CSV'}")
+    (plain,) = read_measurement(written(tmp_path, CHIRP, 1e3 * PUSHED))
+    assert found.name == "B/A"  # both channels have one name
+    assert found.values == pytest.approx(plain.values, rel=1e-3)
+    with pytest.raises(UsageError, match="at most one u"):
+        read_records("u=A.CSV,u=B.CSV")
+    (tmp_path / "C.CSV").write_text(oscilloscope(2 * t, PUSHED), newline="")
+    with pytest.raises(DataError, match="has a sample every"):
+        read_records(f"u={tmp_path / 'A.CSV'},y={tmp_path / 'C.CSV'}")
+
+
+def test_nodes_of_a_circuit_keep_their_names(tmp_path):
+    (found,) = read_measurement(written(tmp_path, CHIRP, PUSHED, head="time\tV(in)\tV(n001)", sep="\t"))
+    assert found.name == "V(n001)/V(in)"
+    assert found.unit == "1"
