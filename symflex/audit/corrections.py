@@ -12,9 +12,10 @@ a number, the part with another exponent, another symbol, or a sum of the same t
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from itertools import chain, combinations, islice, product
 
 from symflex.algebra import LAPLACE, Factored, by_powers
@@ -52,12 +53,15 @@ MOST_PARTS = 150
 MOST_TERMS = 1000
 MOST_WORK = 20_000  # number of terms in all values that parts would need
 EXPONENTS = tuple(Fraction(n, 2) for n in (2, 4, -2, 1, 6, -1, 8, -4, 3, 0, -3, -6))
+MOST_OFFERED, MOST_LEFT_OUT = 30, 4000  # terms that a sum may have lost, and places with terms that are tried
 MOST_FACTORS = 6  # of a product of which some are tried on the other side of the bar; of more, all are
 FACTORS = (Fraction(2), Fraction(1, 2), Fraction(-1), Fraction(4), Fraction(1, 4))
 REAL_POINT, FEW_DIGITS = (Fraction(1), Fraction(0)), 15
 """First point at which a formula with another line is tried, and its digits: roots are unambiguous there."""
 LINE_EXPONENTS = tuple(Fraction(n, 4) for n in (2, 1, 4, 8, -2, 12, 16, -1, -4))
 MOST_PAIRS, FEW_SLIPS = 1500, 20  # pairs of slips in a line that are tried, and slips in each of two lines
+S = Name(LAPLACE)
+ODD = ("sin", "tan", "sinh", "tanh")
 FUNCTION_SWAPS = ("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp")
 
 
@@ -90,7 +94,7 @@ def find_correction(reading: FormulaReading, tf: TransferFunction) -> Correction
     inside = _mended_calls(reading, tf, numbers), _exchanged_names(reading, numbers)
     sums = _both_sums(reading), _inverted_ratios(reading, numbers)
     last = lines[1], _derived_lines(reading, tf, numbers), _slipped_twice(reading, numbers)
-    for change in chain(lines[0], inside[0], _in_expression(reading), inside[1], *sums, *last):
+    for change in chain(lines[0], inside[0], _in_expression(reading, tf, numbers), inside[1], *sums, *last):
         corrected = Formula(change.expression, change.scale, change.lines, reading.formula.parameters)
         try:
             again = read(corrected, tf)
@@ -101,7 +105,7 @@ def find_correction(reading: FormulaReading, tf: TransferFunction) -> Correction
     return None
 
 
-def _in_expression(reading: FormulaReading) -> Iterator[Correction]:
+def _in_expression(reading: FormulaReading, tf: TransferFunction, numbers: Numbers) -> Iterator[Correction]:
     formula = reading.formula
     parts = [(p, side) for p, side in _parts(formula.expression) if p is not formula.expression]
     if formula.scale is not None:
@@ -119,13 +123,108 @@ def _in_expression(reading: FormulaReading) -> Iterator[Correction]:
         if value is not None:
             wanted.append(_Wanted(reading, part, side, value))
             work += sum(len(f) for f, _ in value.factors)
-    for rule in (_times_number, _other_exponent, _other_symbol, _times_monomial, _other_terms, _more_terms):
+    yield from _by_rules((_times_number, _other_exponent, _other_symbol), wanted)
+    yield from _left_out(reading, tf, numbers)
+    yield from _by_rules((_times_monomial, _other_terms, _more_terms), wanted)
+
+
+def _by_rules(
+    rules: Sequence[Callable[[_Wanted], Iterator[Correction]]], wanted: Sequence[_Wanted]
+) -> Iterator[Correction]:
+    for rule in rules:
         for each in wanted:
             spend()
             try:
                 yield from rule(each)
             except (UnreadError, GrowError, BudgetError, ZeroDivisionError):
                 continue
+
+
+def _left_out(reading: FormulaReading, tf: TransferFunction, numbers: Numbers) -> Iterator[Correction]:
+    """Yield sums that lost a term, a sum that is missing as a factor, and sums and inverses exchanged.
+
+    Terms and factors are those of the derived function, as a person looks for what is not printed.
+    """
+    formula = reading.formula
+    form = print_form(tf)
+    parameters = formula.parameters | {p.name for p in tf.parameters}
+    known = {*parameters, *(name for name, _ in formula.lines), LAPLACE, "pi"}
+    derived = [
+        n
+        for n in (*nodes(form.num), *nodes(form.den))
+        if isinstance(n, Sum) and all(x.name in known for x in nodes(n) if isinstance(x, Name))
+    ]
+    named = dict.fromkeys(t for each in derived for t in each.terms)
+    terms = list(islice(named, MOST_OFFERED))
+    terms += [n for n in (number(1), *map(Name, sorted(parameters))) if n not in named]
+    terms += [quotient(number(1), Name(n)) for n in sorted(parameters)]
+    parts = list(_parts(formula.expression))[:MOST_PARTS]
+    summands = [t for part, _ in parts if isinstance(part, Sum) for t in part.terms]
+
+    def offered() -> Iterator[tuple[Expression, Expression, Change]]:
+        for part, side in sorted(parts, key=lambda p: len(nodes(p[0]))):
+            for new, before, after in _exchanged_inverses(part):
+                yield part, new, Change(side, before, after)
+            for before, more in _places_for_terms(part):
+                if before is part and any(part is t for t in summands):  # its sum loses the term
+                    continue
+                printed = before.terms if isinstance(before, Sum) else (before,)
+                for term in terms:
+                    if term not in printed:
+                        # Of a sum, and of a side of the bar, only the term is missing.
+                        is_side = isinstance(part, Quotient) and part is formula.expression
+                        is_sum = isinstance(before, Sum) or is_side
+                        change = (number(0), term) if is_sum else (before, sum_of([before, term]))
+                        yield part, more(term), Change(side, *change)
+        whole = formula.expression
+        for missing in dict.fromkeys(derived):
+            yield whole, product_of([whole, missing]), Change("numerator", number(1), missing)
+            yield whole, quotient(whole, missing), Change("denominator", number(1), missing)
+
+    for part, new, change in islice(offered(), MOST_LEFT_OUT):
+        expression = _replaced(formula.expression, part, new)
+        if _agrees(replace(numbers, formula=replace(formula, expression=expression))):
+            yield Correction((change,), expression, formula.scale, formula.lines)
+
+
+def _places_for_terms(part: Expression) -> Iterator[tuple[Expression, Callable[[Expression], Expression]]]:
+    """Yield what may have lost a term: a sum, or some factors of a product, with what makes one of them."""
+    match part:
+        case Sum():
+            yield part, lambda term: sum_of([*part.children, term])
+        case Product(factors) if len(factors) <= MOST_FACTORS:
+            for begin, end in combinations(range(len(factors) + 1), 2):
+                inside = product_of(factors[begin:end])
+                if not isinstance(inside, Sum | Number):
+                    yield (
+                        part if end - begin == len(factors) else inside,
+                        partial(_with_term, inside, factors[:begin], factors[end:]),
+                    )
+        case Quotient(above, below):
+            if isinstance(above, Name | Call | Power):
+                yield above, lambda term: quotient(sum_of([above, term]), below)
+            if isinstance(below, Name | Call | Power):
+                yield below, lambda term: quotient(above, sum_of([below, term]))
+
+
+def _with_term(
+    inside: Expression, before: Sequence[Expression], after: Sequence[Expression], term: Expression
+) -> Expression:
+    return product_of([*before, sum_of([inside, term]), *after])
+
+
+def _exchanged_inverses(part: Expression) -> Iterator[tuple[Expression, Expression, Expression]]:
+    """Yield a sum with terms turned over, as inverses, both, or multiplied, and what these terms become."""
+    if not isinstance(part, Sum):
+        return
+    every = tuple(range(len(part.terms)))
+    for chosen in dict.fromkeys((every, *combinations(every, 2))):
+        inside = [part.terms[i] for i in chosen]
+        others = [t for i, t in enumerate(part.terms) if i not in chosen]
+        inverses = sum_of([quotient(number(1), t) for t in inside])
+        plain = sum_of(inside)
+        for new in (quotient(number(1), plain), inverses, quotient(number(1), inverses), product_of(inside)):
+            yield sum_of([*others, new]), plain, new
 
 
 def _parts(expression: Expression) -> Iterator[tuple[Expression, str]]:
@@ -209,7 +308,7 @@ def _times_monomial(wanted: _Wanted) -> Iterator[Correction]:
     factor = None if ratio is None else monomial_expression(reading.field, ratio)
     if factor is not None:
         front, powers = powers_of(product_of([part, factor]))
-        ordered = sorted(powers.items(), key=lambda item: item[0] == Name(LAPLACE))
+        ordered = sorted(powers.items(), key=lambda item: item[0] == S)
         yield wanted.replaced_by(of_powers(front, dict(ordered)))
 
 
@@ -383,9 +482,16 @@ def _more_terms(wanted: _Wanted) -> Iterator[Correction]:
     term = monomial_expression(field, missing)
     if term is None and isinstance(part, Sum):
         term = in_symbols(field, missing, symbols_of(reading))
-    if term is not None:
+    if term is not None and not (_falls(term) and not _falls(part)):
         printed = part.terms if isinstance(part, Sum) else (part,)
         yield wanted.replaced_by(sum_of([*printed, term]), Change(wanted.place, number(0), term))
+
+
+def _falls(expression: Expression) -> bool:
+    """Return whether s stands below a bar: a term k/s^2 of a polynomial would be a silly repair."""
+    return any(
+        isinstance(n, Quotient) and any(x == S for x in nodes(n.denominator)) for n in nodes(expression)
+    )
 
 
 def _inverted_ratios(reading: FormulaReading, numbers: Numbers) -> Iterator[Correction]:
@@ -438,7 +544,12 @@ def _mended_calls(reading: FormulaReading, tf: TransferFunction, numbers: Number
     for part, side in list(_parts(formula.expression))[:MOST_PARTS]:
         new: list[Expression] = []
         if isinstance(part, Call):
-            scaled = (replace(part, argument=argument) for argument in _multiples(part.argument))
+            scaled = (
+                replace(part, argument=argument)
+                for argument in _multiples(part.argument)
+                # That sign is the one before the function.
+                if not (part.name in ODD and argument == negative(part.argument))
+            )
             new = [*scaled, *_slips(part, others), number(1)]
         terms = part.terms if isinstance(part, Sum) else (part,) if part is formula.expression else ()
         changes = [(part, n) for n in new]
@@ -486,7 +597,8 @@ def _mended_lines(reading: FormulaReading, numbers: Numbers) -> Iterator[Correct
         if _only_renames(line):
             continue
         earlier = (other for other, _ in reading.formula.lines[:i])
-        others = [Name(n) for n in (*sorted(reading.formula.parameters), *earlier)]
+        known = reading.formula.parameters | {p.name for p in numbers.bound.source.parameters}
+        others = [Name(n) for n in (*sorted(known), *earlier)]
         parts = islice(nodes(line), MOST_PARTS)
         turned = (_replaced(line, part, new) for part in parts for new in _turned_over(part))
         for new in chain(_slips(line, others), turned):
@@ -505,15 +617,22 @@ def _slips(line: Expression, others: Sequence[Name]) -> Iterator[Expression]:
     for part in nodes(line):
         if isinstance(part, Power):
             yield from (_replaced(line, part, _raised(part.base, n)) for n in LINE_EXPONENTS)
+            yield _replaced(line, part, Power(negative(part.base), part.exponent))
+            more = (
+                p for other in others for p in (product_of([part.base, other]), quotient(part.base, other))
+            )
+            yield from (_replaced(line, part, Power(base, part.exponent)) for base in more)
         for term in part.terms if isinstance(part, Sum) else ():
-            yield _replaced(line, part, sum_of([negative(t) if t is term else t for t in part.children]))
+            for new in (negative(term), product_of([term, S]), quotient(term, S)):
+                yield _replaced(line, part, sum_of([new if t is term else t for t in part.children]))
     yield from (new for other in others for new in (product_of([other, line]), quotient(line, other)))
+    yield from (_replaced(line, part, new) for part in (*inside, line) for new in _rooted(part))
 
 
 def _raised(base: Expression, exponent: Fraction) -> Expression:
     if exponent < 0:
         return quotient(_raised(_below(base), -exponent), _raised(_above(base), -exponent))
-    return base if exponent == 1 else Power(base, _rational(exponent))
+    return base if exponent == 1 or is_number(base, 1) else Power(base, _rational(exponent))
 
 
 def _other_powers(part: Expression) -> Iterator[Expression]:
@@ -529,6 +648,16 @@ def _other_powers(part: Expression) -> Iterator[Expression]:
         inside = product_of([base for base, n in powers.items() if n == side])
         other_powers = {base: n for base, n in powers.items() if n != side}
         yield of_powers(front, {**other_powers, Call("sqrt", inside): side})
+
+
+def _rooted(part: Expression) -> Iterator[Expression]:
+    """Yield a product with some of its factors below a root."""
+    front, powers = powers_of(part)
+    for count in range(1, len(powers) + 1) if front and len(powers) <= MOST_FACTORS else ():
+        for chosen in combinations(powers, count):
+            inside = of_powers(Fraction(1), {base: powers[base] for base in chosen})
+            others = {base: n for base, n in powers.items() if base not in chosen}
+            yield of_powers(front, {**others, Call("sqrt", inside): 1})
 
 
 def _other_lines(reading: FormulaReading, numbers: Numbers) -> Iterator[Correction]:

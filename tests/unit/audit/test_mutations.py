@@ -124,6 +124,78 @@ def test_slips_in_the_formula_of_an_isolator_are_found():
         assert (found.verdict, changes) == ("differs", expected), expr
 
 
+SERIES = """symflex = 1
+parameters = { m = { unit = "kg" }, k_1 = { unit = "N/m" }, k_2 = { unit = "N/m" }, c = { unit = "N*s/m" } }
+inputs.F = { force = "x" }
+outputs.X = "x"
+[elements]
+body = { type = "mass", at = "x", m = "m" }
+first = { type = "spring", between = ["x", "y"], k = "k_1" }
+second = { type = "spring", between = ["y", "ground"], k = "k_2" }
+damper = { type = "damper", between = ["x", "ground"], b = "c" }
+[published."X/F"]
+"""
+BELOW = "denominator"
+SERIES_SLIPS = [
+    ("1/(m*s^2 + c*s + 1/k_1 + 1/k_2)", (BELOW, "1/k_1 + 1/k_2", "1/(1/k_1 + 1/k_2)")),
+    ("1/(m*s^2 + c*s + k_1 + k_2)", (BELOW, "k_1 + k_2", "1/(1/k_1 + 1/k_2)")),
+    ("(k_1 + k_2)/((m*s^2 + c*s)*(k_1 + k_2) + k_1 + k_2)", (BELOW, "k_1 + k_2", "k_1*k_2")),
+    ("1/((m*s^2 + c*s)*(k_1 + k_2) + k_1*k_2)", ("numerator", "1", "k_1 + k_2")),
+    ("(k_1 + k_2)/((m*s^2 + c*s)*k_1 + k_1*k_2)", None),
+    ("(k_1 + k_2)/(m*s^2*(k_1 + k_2) + k_1*k_2)", (BELOW, "0", "c*(k_1 + k_2)*s")),
+]
+
+
+@pytest.mark.parametrize(("expr", "expected"), SERIES_SLIPS)
+def test_springs_in_series_are_repaired_as_a_person_would(expr, expected):
+    (found,) = audit(pipeline.loads(f"{SERIES}expr = '{expr}'\n"))
+    changes = [(c.place, format_expression(c.printed), format_expression(c.derived)) for c in found.changes]
+    assert found.verdict == "differs"
+    if expected is not None:
+        assert changes == [expected]
+    # A term k/s^2 in a polynomial is no repair.
+    assert not any("/s" in derived for _, _, derived in changes)
+
+
+CANTILEVER = """symflex = 1
+parameters = { E = "200 GPa", I = "1e-8 m^4", rho = "7800 kg/m^3", A = "1e-4 m^2", l = "1 m" }
+inputs.F = { force = "tip" }
+outputs.Y = "tip"
+[elements]
+wall = { type = "fixed", at = "root" }
+arm = { type = "beam", between = ["root", "tip"], E = "E", I = "I", rho = "rho", A = "A", l = "l" }
+[published."Y/F"]
+"""
+RECEPTANCE = "(cosh(b)*sin(b) - sinh(b)*cos(b))/(E*I*(b/l)^3*(1 + cosh(b)*cos(b)))"
+WAVENUMBER = "l*(-rho*A*s^2/(E*I))^(1/4)"
+BEAM_SLIPS = [
+    (RECEPTANCE.replace("- sinh", "+ sinh"), WAVENUMBER, ("numerator", "sinh(b)*cos(b)", "-sinh(b)*cos(b)")),
+    (
+        RECEPTANCE.replace("(1 + cosh(b)*cos(b))", "cosh(b)*cos(b)"),
+        WAVENUMBER,
+        (BELOW, "cosh(b)*cos(b)", "cosh(b)*cos(b) + 1"),
+    ),
+    (
+        RECEPTANCE,
+        WAVENUMBER.replace("-rho", "rho"),
+        ("line b", WAVENUMBER.replace("-rho", "rho"), WAVENUMBER),
+    ),
+    (
+        RECEPTANCE,
+        WAVENUMBER.replace("*A", ""),
+        ("line b", WAVENUMBER.replace("*A", ""), "l*(-rho*s^2/(E*I)*A)^(1/4)"),
+    ),
+]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("expr", "line", "expected"), BEAM_SLIPS)
+def test_a_receptance_is_repaired_as_a_person_would(expr, line, expected):
+    (found,) = audit(pipeline.loads(f"{CANTILEVER}expr = '{expr}'\nwhere = {{ b = '{line}' }}\n"))
+    changes = [(c.place, format_expression(c.printed), format_expression(c.derived)) for c in found.changes]
+    assert changes == [expected]
+
+
 RATIOS = {
     "twice": (COLOCATED.replace("-1/2", "-1"), SCALE, "2"),
     "with the other sign": (COLOCATED.replace("-1/2", "1/2"), SCALE, "-1"),
