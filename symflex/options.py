@@ -599,10 +599,13 @@ class FitOptions:
         (),
         "--tf",
         **SOME_TFS,
-        help="Transfer function of --base; one for each response.  Without --base: responses to fit.",
+        help="Transfer function of --base or --model; one for each response.  Without: responses to fit.",
     )
     model: str | Path | None = option(
-        None, "--model", is_path=True, help="Specification whose parameters --free are fitted."
+        None,
+        "--model",
+        is_path=True,
+        help="Specification whose parameters are fitted in place of resonances.",
     )
     free: str = option("", "--free", metavar="NAMES", help="Parameters of --model to fit, such as k,b,J_2.")
     modes: int | None = option(

@@ -992,8 +992,8 @@ def _warnings(fit: ParameterFit) -> tuple[str, ...]:
                 f"{counted(excluded.size, 'outlier')}{fit.residual.of_response(r)} left out, at {places} Hz"
             )
     for p, value, error in zip(fit.machine.parameters, fit.theta, fit.errors, strict=True):
-        if np.isfinite(error) and error > WEAK * abs(value):
-            reach = f"{error / abs(value):.2g} times its value" if value else "larger than its value"
+        if value and np.isfinite(error) and error > WEAK * abs(value):
+            reach = f"{error / abs(value):.2g} times its value"
             said.append(
                 f"{p.name} is not determined: its standard error is {reach}; from {low:.4g} to {high:.4g} Hz "
                 "the response hardly depends on it"

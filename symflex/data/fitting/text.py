@@ -409,6 +409,7 @@ def _pairs(
             "frequency_standard_error_hz": _finite(float(omega_error[i]) / (2 * pi)),
             "damping_ratio": float(zeta[i]),
             "damping_standard_error": _finite(float(zeta_error[i])),
+            "quality_factor": 1 / (2 * float(zeta[i])) if zeta[i] > 0 else None,
         }
         for i in range(omega.size)
     ]
