@@ -177,7 +177,7 @@ class RootSearch:
 
     def _together(self, cell: Cell, count: int) -> list[Root] | None:
         """Return the root in a cell when there is one, of any multiplicity; ``None`` to look closer."""
-        z = cell.centre
+        z, last = cell.centre, inf
         for _ in range(SEARCH_STEPS):
             try:
                 slope = self._winding.sample(z).slope
@@ -191,6 +191,9 @@ class RootSearch:
                 return None
             if abs(step) < CONVERGED:
                 break
+            if count > self.function.power and abs(step) > last / 2:
+                return None  # between several roots steps wander; towards one of that multiplicity they fall
+            last = abs(step)
         else:
             return None
         if not cell.holds(z, CONVERGED):
