@@ -463,7 +463,7 @@ def said_of_units(fit: ResonanceFit, what: str = "base") -> list[str]:
     """Return where data and base, or ``what`` stands for it, are not known to have one unit."""
     said = []
     for measured, base in zip(fit.measured, fit.bases, strict=True):
-        if not base.path or not base.unit:
+        if not base.path or not base.unit or (not measured.unit and base.unit == "1"):
             continue
         if not measured.unit:
             said.append(

@@ -62,6 +62,7 @@ from symflex.data.measurement import MeasuredResponse
 from symflex.data.measurement.measured_response import Samples
 from symflex.errors import DataError, Diagnostic, FitError, counted, no_such, refused
 from symflex.model import ModelParameter
+from symflex.model.settings import check_free
 from symflex.quantities import unit_of
 
 Gradient = Callable[[Complex, Mapping[str, complex]], tuple[Complex, Complex]]
@@ -1007,7 +1008,7 @@ def _warnings(fit: ParameterFit) -> tuple[str, ...]:
 
 
 def refuse_free(names: Sequence[str], known: Mapping[str, ModelParameter], defined: Sequence[str]) -> None:
-    """Refuse names that are no parameters, or that are given twice: SF902."""
+    """Refuse names that are no parameters or come twice, SF902, and values used at rest, SF801."""
     if not names:
         raise refused("--model needs --free, the parameters to fit", f"parameters: {', '.join(known)}")
     for name in names:
@@ -1017,5 +1018,6 @@ def refuse_free(names: Sequence[str], known: Mapping[str, ModelParameter], defin
             )
         if name not in known:
             raise no_such("parameter", name, known)
+        check_free(known[name])
         if names.count(name) > 1:
             raise refused(f"'{name}' is given twice in --free")

@@ -157,7 +157,7 @@ def _written_scale(parameter: ModelParameter) -> tuple[float, str]:
     """Return what one of the unit in which a parameter was written is in the unit of its value."""
     if parameter.written_unit:
         return float(parameter.scale.nearly), parameter.written_unit
-    return 1.0, parameter.unit
+    return 1.0, parameter.unit if parameter.unit != "1" else ""
 
 
 def _spread_text(parameter: ModelParameter) -> str:

@@ -59,9 +59,19 @@ def noisy(values, share, seed):
 
 @pytest.fixture
 def fitted(tmp_path):
-    def fit(free, values, text=DRIVE, tf="theta_1/tau", f=LINES, unit="", samples=(), **changes):
+    def fit(
+        free,
+        values,
+        text=DRIVE,
+        tf="theta_1/tau",
+        f=LINES,
+        unit="",
+        samples=(),
+        is_magnitude=False,
+        **changes,
+    ):
         (tmp_path / "model.toml").write_text(text.format(**BEGUN | changes))
-        response = MeasuredResponse(tf, f, values, unit=unit, samples=samples)
+        response = MeasuredResponse(tf, f, values, unit=unit, samples=samples, is_magnitude=is_magnitude)
         return pipeline.fit_parameters(
             [response], FitOptions(model=tmp_path / "model.toml", free=free, tfs=(tf,))
         )
@@ -259,6 +269,36 @@ def test_parameters_without_effect_are_refused(fitted):
     text = DRIVE.replace("b = {b}", "b = {b}\nspare = 3")
     with pytest.raises(UsageError, match="does not depend on 'spare'"):
         fitted("k,spare", drive(LINES), text)
+
+
+def test_a_corner_in_hertz_comes_back_in_hertz(fitted):
+    text = """
+symflex = 1
+parameters = {{ K = 2, f_0 = "10 Hz", zeta = 0.1 }}
+inputs.u = {{}}
+blocks.G = {{ type = "low_pass", omega = "f_0", zeta = "zeta" }}
+outputs.y = "K*G*u"
+"""
+    f = np.geomspace(1, 100, 60)
+    values = 3 / (1 - (f / 23) ** 2 + 0.06j * f / 23)
+    assert fitted("K,f_0,zeta", values, text, "y/u", f).theta == pytest.approx([3, 23, 0.03], rel=1e-6)
+
+
+def test_a_friction_that_is_not_there_becomes_zero_where_it_may(fitted):
+    b = '{ value = "0.05 N*m*s/rad", assume = "nonnegative" }'
+    f = np.geomspace(3, 60, 60)
+    s = 2j * np.pi * f
+    undamped = (5e-3 * s**2 + 400) / ((2e-3 * s**2 + 400) * (5e-3 * s**2 + 400) - 400**2)
+    found = fitted("J_1,k,b", noisy(undamped, 0.01, 12), f=f, J_2='"5 g*m^2"', b=b)
+    low, high = found.intervals()[2]
+    assert low == 0 <= found.values["b"] < high
+    assert abs(found.values["k"] - 400) < 3 * found.errors[1]
+
+
+def test_a_magnitude_without_phase_is_enough_for_a_drive(fitted):
+    sizes = np.abs(noisy(drive(LINES), 0.02, 13))
+    found = fitted("J_1,J_2,k,b", sizes, is_magnitude=True)
+    assert np.max(np.abs(found.theta - list(TRUE.values())) / found.errors) < 3.5
 
 
 def test_a_few_lines_are_refused(fitted):
