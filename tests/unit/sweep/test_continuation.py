@@ -1,13 +1,19 @@
 """Roots carried along a sweep: the same as those of a search at every point, and right."""
 
+from dataclasses import replace
+from fractions import Fraction
+
 import mpmath
 import numpy as np
 import pytest
+from flint import arb
 from mpmath import mp, mpf
 
 import symflex
 from symflex.options import SweepOptions
+from symflex.roots.pole_zero_map import StabilityVerdict
 from symflex.sweep import plan_sweep, points
+from symflex.sweep.continuation import Continuation, _end_of_straight
 from symflex.sweep.design import derived
 from symflex.sweep.points import RootSolver, solve_roots
 from tests.unit.sweep.models import BEAM, LOOP, STEEL, TWO_RESONANCES
@@ -173,3 +179,41 @@ def test_roots_are_not_carried_past_a_double_root():
     together, alone = solved(DAMPED, ["b=80,85,90,95"], modes=1)
     assert np.sum(alone["im"] == 0, axis=1).tolist()[0] == 0 < np.sum(alone["im"] == 0, axis=1).tolist()[-1]
     assert not same(together, alone)
+
+
+@pytest.fixture(scope="module")
+def carried():
+    """What carries the lowest poles of a damped beam over b, and these at b = 2 N s/m."""
+    task, design = planned(DAMPED, ["b=2,3"], modes=1)
+    continuation = Continuation.of(derived(task), task.names, "poles", task.region)
+    at = continuation.begin(design.points[0], [complex(-1.07475047370624, 51.2219649399906)], 0)
+    assert at is not None
+    return continuation, at
+
+
+def test_roots_that_are_alike_or_shared_are_not_carried(carried):
+    continuation, at = carried
+    guess = at.roots[0].enclosure().mid()
+    assert continuation._roots(at.sides, [guess]) is not None
+    assert continuation._roots(at.sides, [guess, guess]) is None
+    assert continuation._roots((at.sides[0], at.sides[0]), [guess]) is None  # the other side is 0 there
+
+
+def test_no_verdict_is_carried_to_a_root_that_may_be_on_either_side_of_the_axis(carried):
+    continuation, at = carried
+    (root,) = at.roots
+    stable = StabilityVerdict("stable", 0, True, "")
+    assert continuation._keeps(stable, at)
+    unsure = replace(root, re=arb(0, 1e-3))
+    assert not continuation._keeps(stable, replace(at, roots=(unsure,)))
+
+
+def test_a_straight_way_leads_past_a_point_all_of_whose_roots_are_within_the_contour(carried):
+    _, at = carried
+    (root,) = at.roots
+    outside = replace(root, im=root.im * 1e6)
+    start, end, between = (replace(at, numbers=(Fraction(n),)) for n in (1, 3, 2))
+    assert _end_of_straight([start, between, end], 0, 2) == 2
+    assert _end_of_straight([start, replace(between, roots=(root, outside)), end], 0, 2) == 1
+    beside = replace(between, numbers=(Fraction(4),))
+    assert _end_of_straight([start, beside, end], 0, 2) == 1
