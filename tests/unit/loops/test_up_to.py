@@ -18,7 +18,7 @@ from symflex.balls import precision, series_terms
 from symflex.errors import UsageError
 from symflex.loops.over import characteristic
 from symflex.loops.patches import patch
-from symflex.loops.up_to import Path
+from symflex.loops.up_to import Path, PolesUpTo
 
 BECK, BECK_OMEGA = 20.0509536189737, 11.0155576409229  # EI/l^2, rad/s
 
@@ -280,6 +280,14 @@ def test_a_beam_that_no_function_sees_is_counted_too():
         """
     found = loads(text).stability(over="l", limits=(0.95, 1.05), up_to_hz=10, digits=8)
     assert [(each.poles.right, each.poles.axis) for each in found.proved.intervals] == [(0, 4)]
+
+
+def test_no_patch_stands_for_a_function_with_a_constant_that_its_parameter_changes():
+    # sqrt(beta) would stay what it is in the middle.
+    ends = (Fraction(1, 8), Fraction(1, 4))
+    for name in ("beta", "U"):
+        poles = PolesUpTo.of(characteristic(loads(PIPE).resolved, (name,), (ends,)), ends, 5.0, 64)
+        assert (poles._patch_on(0, poles.axis, 1, ends) is None) == (name == "beta")
 
 
 CLAMPED = """
