@@ -5,5 +5,5 @@ or a :class:`~symflex.model.PrintedTable` of roots. Output: an :class:`Audit`, o
 """
 
 from symflex.audit.judge import Audit, audit, check_published, judge
-from symflex.audit.slips import audit_tables
-from symflex.audit.tables import TableAudit
+from symflex.audit.slips import audit_tables, explained_by_print
+from symflex.audit.tables import TableAudit, judge_array

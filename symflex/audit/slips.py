@@ -53,7 +53,6 @@ MOST_OF_ONE: Final = 40  # changes of one expression
 ENOUGH_DIGITS: Final = 6  # printed digits of wrong entries in all, below which a match says little
 SHOWN: Final = 3  # explanations that are named
 LATE: Final = 20  # units of the last digit by which an entry is off that was computed with too few
-LATE_DIGITS: Final = 2  # last digits of an entry: where one alone is off, it was computed and not mistyped
 FACTORS: Final[Mapping[str, tuple[Fraction, int, bool]]] = {
     "2 pi times": (Fraction(2), 1, False),
     "1/(2 pi) times": (Fraction(1, 2), -1, False),
@@ -134,6 +133,12 @@ def explained(found: TableAudit, model: Model, source: Source, load: Callable[[S
     return replace(found, slip="; or ".join(said) + evidence)
 
 
+def explained_by_print(found: TableAudit) -> TableAudit:
+    """Return the same with slips of the pen, or a factor common to all entries; no model is changed."""
+    said = _pen(found) or _common_factor(found) if found.verdict == "wrong" else ""
+    return replace(found, slip=said)
+
+
 def _wrong(found: TableAudit) -> list[EntryAudit]:
     return [e for e in found.entries if e.verdict in ("wrong", "extra", "missing")]
 
@@ -159,11 +164,12 @@ def _pen(found: TableAudit) -> str:
     for entry in _wrong(found):
         if entry.value is None:
             return ""
+        off = abs(Fraction(Decimal(entry.printed)) - entry.value) / last_place(entry.printed)
         text = _respelled(entry.printed, entry.value)
         slips += text is not None
         if text is not None:
             said.append(f"{entry.printed} in row {entry.row} is {text[1]} with {text[0]}")
-        elif abs(Fraction(Decimal(entry.printed)) - entry.value) < LATE * last_place(entry.printed):
+        elif off < LATE:
             said.append(f"{entry.printed} in row {entry.row} is off in its last digits")
         else:
             return ""
@@ -182,7 +188,7 @@ def _respelled(printed: str, value: Fraction) -> tuple[str, str] | None:
         swapped = [*printed]
         swapped[i], swapped[j] = printed[j], printed[i]
         offered.append(("two digits exchanged", "".join(swapped)))
-    early = places[:-LATE_DIGITS]
+    early = places[: -1 if abs(Fraction(Decimal(printed)) - value) > LATE * last_place(printed) else -2]
     offered += [("one digit too many", printed[:i] + printed[i + 1 :]) for i in early]
     offered += [("a mistyped digit", printed[:i] + d + printed[i + 1 :]) for i in early for d in DIGITS]
     offered += [("a digit left out", printed[:i] + d + printed[i:]) for i in places[1:-1] for d in DIGITS]

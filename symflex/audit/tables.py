@@ -13,7 +13,7 @@ Example: for a clamped-free beam, ``omega*l^2*sqrt(rho*A/(E*I))`` is 3.51601527.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
 from itertools import accumulate, chain
@@ -24,6 +24,7 @@ from flint import acb, arb
 
 from symflex.audit.numeric import value_of
 from symflex.balls import ball, precision
+from symflex.errors import SymflexError, Text
 from symflex.expressions import (
     Expression,
     Name,
@@ -35,8 +36,8 @@ from symflex.expressions import (
     substitute,
 )
 from symflex.loops.over import with_values
-from symflex.model import Model, PrintedRow, PrintedTable
-from symflex.model.printed_tables import GAP
+from symflex.model import ExactValue, Model, PrintedRow, PrintedTable
+from symflex.papers.tabular import GAP, PrintedList, cells_of, lists_of
 from symflex.roots.locate import locate
 from symflex.roots.pole_zero_map import PoleZeroMap
 from symflex.roots.region import Everything, Modes
@@ -65,6 +66,7 @@ COMMON: Final[Mapping[str, Expression]] = {
 POWERS: Final = (Fraction(1), Fraction(1, 2), Fraction(2), Fraction(-1))
 """Exponents of omega in frequencies, wavenumbers of beams, eigenvalues and periods."""
 CLOSE: Final = 0.5  # share of entries that must be right to 1 % for a reading to be taken
+CLOSE_IN_PROPORTION: Final = 0.75  # where a factor was chosen that makes some of them so
 NEAR: Final = 0.01
 FEWEST_ENTRIES: Final = 3  # for a factor that is not said
 NO_READING: Final = "what the table prints of a root is not said, and no common quantity fits"
@@ -135,13 +137,18 @@ def judge_table(model: Model, table: PrintedTable) -> TableAudit:
         As :func:`symflex.roots.locate.locate` for roots that cannot be found.
     """
     digits = max(map(significant, (e for row in table.rows for e in row.entries if e != GAP)), default=4)
-    rows = [_RowOfRoots(model, table, row, digits) for row in table.rows]
+    longest = max(len(row.entries) for row in table.rows)
+    known: dict[tuple[tuple[str, ExactValue], ...], _Located] = {}
+    for row in table.rows:  # rows of the same values share their roots
+        known[row.values] = known.get(row.values) or _Located(model, table, row.values, longest, digits)
+    rows = [_RowOfRoots(known[row.values], row) for row in table.rows]
     if table.prints is not None:
         return _judged(table, rows, table.prints, format_expression(table.prints))
     readings = chain(COMMON.items(), _in_proportion(rows))
     tried = [_judged(table, rows, prints, reading) for reading, prints in readings]
     best = max(tried, key=lambda audit: (audit.is_right, audit.close))
-    if best.close >= CLOSE * best.count:
+    least = CLOSE if best.reading in COMMON else CLOSE_IN_PROPORTION
+    if best.close >= least * best.count:
         return best
     entries = tuple(
         EntryAudit(i, j, text, "gap" if text == GAP else "undecided")
@@ -178,12 +185,19 @@ def _in_proportion(rows: Sequence[_RowOfRoots]) -> Iterator[tuple[str, Expressio
         yield f"in proportion to {format_expression(prints)}", product_of([number(factor), prints])
 
 
-class _RowOfRoots:
-    """The certified roots of one row, searched as far as its entries go."""
+class _Located:
+    """The certified roots with some values of parameters, searched as far as the longest row goes."""
 
-    def __init__(self, model: Model, table: PrintedTable, row: PrintedRow, digits: int) -> None:
-        self.model = with_values(model, dict(row.values)) if row.values else model
-        self.table, self.row, self.digits = table, row, digits
+    def __init__(
+        self,
+        model: Model,
+        table: PrintedTable,
+        values: tuple[tuple[str, ExactValue], ...],
+        longest: int,
+        digits: int,
+    ) -> None:
+        self.model = with_values(model, dict(values)) if values else model
+        self.table, self.digits, self.count = table, digits, longest + LATER
         (self.bound,) = derive_for_roots(self.model, [table.tf])
         self.known: dict[int, PoleZeroMap] = {}
         self.reason = ""
@@ -191,11 +205,11 @@ class _RowOfRoots:
     def located(self, beyond: int) -> PoleZeroMap:
         """Return the roots to some digits beyond the printed ones."""
         if beyond not in self.known:
-            asked, count = self.digits + beyond, len(self.row.entries) + LATER
+            asked, count = self.digits + beyond, self.count
             while True:
                 region = Modes(count) if self.model.is_distributed else Everything()
                 found = locate(self.bound, region, asked)
-                enough = len(self._of(found)) >= len(self.row.entries) + LATER
+                enough = len(self._of(found)) >= self.count
                 if enough or not self.model.is_distributed or count >= MOST_MODES:
                     break
                 count *= 2
@@ -241,13 +255,25 @@ class _RowOfRoots:
                     found.append((value, spare))
             return found
 
+
+class _RowOfRoots:
+    """A row and the roots that belong to it."""
+
+    def __init__(self, located: _Located, row: PrintedRow) -> None:
+        self.located, self.row = located, row
+
+    @property
+    def reason(self) -> str:
+        """What is not proved of the roots."""
+        return self.located.reason
+
     def nonzero(self, prints: Expression) -> list[tuple[arb, bool]]:
         """Return the values of the roots that every table lists."""
-        return [pair for pair in self.values(prints, BEYOND) if not pair[1]]
+        return [pair for pair in self.located.values(prints, BEYOND) if not pair[1]]
 
     def judged(self, row: int, prints: Expression) -> Iterator[EntryAudit]:
         """Yield what is found about every entry, and roots that were left out."""
-        values = self.values(prints, BEYOND)
+        values = self.located.values(prints, BEYOND)
         finer: list[arb] = []
         for column, which in self._paired(values):
             if column is None:
@@ -264,12 +290,12 @@ class _RowOfRoots:
                 continue
             verdict = verdict_on(text, value)
             if verdict == "undecided":
-                finer = finer or [v for v, _ in self.values(prints, MORE)]
+                finer = finer or [v for v, _ in self.located.values(prints, MORE)]
                 value = finer[which] if which < len(finer) else value
                 verdict = verdict_on(text, value)
             right, digits = nearest_decimal(value, text), right_digits(text, value)
             exact = (
-                Fraction(str(value.mid().str(self.digits + BEYOND, radius=False)))
+                Fraction(str(value.mid().str(self.located.digits + BEYOND, radius=False)))
                 if value.is_finite()
                 else None
             )
@@ -413,3 +439,37 @@ def right_digits(text: str, value: arb) -> int:
         return significant(text) if not off else 0
     # Off by half a unit of a digit, it is right.
     return max(0, min(significant(text), floor(log10(abs(true))) - floor(log10(2 * off) - 1e-12)))
+
+
+def judge_array(array: Text, models: Sequence[Model]) -> TableAudit | None:
+    """Return what is found about the numbers in a tabular; None if they are about none of the models.
+
+    Each list of numbers is compared with the poles of the models' first functions, in the most common units
+    or up to a factor. A list that is near none of them is about something else. Raises SF103 for what no page
+    has.
+    """
+    lists = [each for each in lists_of(cells_of(array)) if len(each.entries) >= FEWEST_ENTRIES]
+    best: TableAudit | None = None
+    for model in models:
+        found = [audit for each in lists if (audit := _about(array, each, model)) is not None]
+        if found:
+            table = replace(found[0].table, rows=tuple(row for audit in found for row in audit.table.rows))
+            entries = tuple(replace(e, row=i) for i, audit in enumerate(found, 1) for e in audit.entries)
+            readings = dict.fromkeys(audit.reading for audit in found)
+            reasons = dict.fromkeys(audit.reason for audit in found if audit.reason)
+            joined = TableAudit(table, found[0].prints, "; ".join(readings), entries, "; ".join(reasons))
+            best = max(filter(None, (best, joined)), key=lambda audit: audit.close)
+    return best
+
+
+def _about(array: Text, given: PrintedList, model: Model) -> TableAudit | None:
+    """Return what is found about one list, None if it is not about the poles of a model."""
+    pairs = model.transfer_functions
+    rows = (PrintedRow((), given.entries, array.span, given.heading),)
+    try:
+        found = judge_table(
+            model, PrintedTable(given.heading, pairs[0], "poles", None, rows, span=array.span)
+        )
+    except SymflexError:  # a model without values has no roots
+        return None
+    return found if found.prints is not None else None

@@ -24,6 +24,7 @@ VERDICTS = {
     "undecided": "NOT DECIDED: no value could be compared",
 }
 
+LONGEST_HEADING = 24  # characters of a column's or row's heading
 TABLE_VERDICTS = {
     "right": "every entry is right to the last digit: proved",
     "rounded": "right, but badly rounded: proved",
@@ -234,7 +235,8 @@ def table_text(found: TableAudit, width: int = WIDTH) -> str:
         said = ENTRY_VERDICTS.get(e.verdict, "")
         said += f", {counted(e.digits, 'digit')} right" if e.verdict == "wrong" and e.digits else ""
         if said and (found.prints is not None):
-            rows.append((str(e.row), str(e.column or "-"), e.printed or "-", e.right or "-", said))
+            heading = table.rows[e.row - 1].heading[:LONGEST_HEADING]
+            rows.append((heading or str(e.row), str(e.column or "-"), e.printed or "-", e.right or "-", said))
     if len(rows) > 1:
         widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
         cells = (

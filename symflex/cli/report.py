@@ -55,11 +55,12 @@ def report(given: ReportOptions) -> int:
 
 @bare_command("referee", RefereeOptions)
 def referee(given: RefereeOptions) -> int:
-    """Judge the displayed formulas of a paper by models.
+    """Judge the displayed formulas and the tables of a paper by models.
 
     PAPER.tex is read as it stands, with the macros it defines and the files beside it that it reads. Each
     displayed formula is proved right, right but for a factor, or different, with the term that is wrong;
-    others are listed with the reason why they were not judged. [notation] of a SPEC says what the symbols of
+    others are listed with the reason why they were not judged. Numbers in a tabular that are near the poles
+    of a model are judged one by one. [notation] of a SPEC says what the symbols of
     the paper are called there. A difference is a result, so the exit code is 0; with --strict it is 4.
     """
     from symflex import pipeline
@@ -71,15 +72,18 @@ def referee(given: RefereeOptions) -> int:
     paper = read_paper(Path(given.paper))
     for problem in paper.notes:
         note(problem.render())
-    judged = court.referee(paper, models)
+    judged, tables = court.referee(paper, models), court.referee_tables(paper, models)
     answer(
-        given.as_json, lambda: court.referee_document(given.paper, judged), lambda: court.referee_text(judged)
+        given.as_json,
+        lambda: court.referee_document(given.paper, judged, tables),
+        lambda: court.referee_text(judged, tables),
     )
     if given.output is not None:
-        write(given.output, report_page(court.referee_page(Path(given.paper).name, judged)))
+        write(given.output, report_page(court.referee_page(Path(given.paper).name, judged, tables)))
     if given.errata is not None:
         write(given.errata, court.errata_latex(judged))
-    is_right = bool(judged) and all(j.verdict == "equal" for j in judged)
+    is_right = bool(judged or tables) and all(j.verdict == "equal" for j in judged)
+    is_right = is_right and all(t.audit is None or t.audit.is_right for t in tables)
     return 4 if given.strict and not is_right else 0
 
 

@@ -392,6 +392,7 @@ class PrintedRow:
     values: tuple[tuple[str, ExactValue], ...]  # of parameters, in place of the model's
     entries: tuple[str, ...]  # digits as printed, ``-`` for a gap
     span: Span | None = field(default=None, compare=False, repr=False)
+    heading: str = ""  # of its column or row in LaTeX
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,6 @@ entry, whose digits stay text: ``"16.250"`` promises one digit more than ``"16.2
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -26,14 +25,12 @@ from symflex.model.network import AsWritten
 from symflex.model.reading import Reader
 from symflex.model.settings import value_in_unit
 from symflex.model.spec import ArrayValue, KeyValue, NumberValue, StringValue, TableValue, Value
+from symflex.papers.tabular import GAP, PRINTED, cells_of, lists_of
 from symflex.quantities import parse_quantity
 
-KEYS = ("of", "tf", "prints", "rows", "values", "source", "doc")
+KEYS = ("of", "tf", "prints", "rows", "values", "latex", "source", "doc")
 ROW_KEYS = ("set", "values")
 MOST_ENTRIES = 2000  # a printed page has fewer
-LONGEST_ENTRY = 40  # characters
-GAP = "-"
-PRINTED = re.compile(r"[-+]?(\d{1,30}(\.\d{0,30})?|\.\d{1,30})([eE][-+]?\d{1,2})?\Z")
 EXAMPLE = 'for instance { prints = "f", rows = [{ values = ["8.231", "51.58"] }] }'
 
 
@@ -110,11 +107,15 @@ class _TableReading:
 
     def _rows(self, table: TableValue) -> Iterator[PrintedRow]:
         reader, what = self.reader, self.what
-        rows, values = table.get("rows"), table.get("values")
-        given = rows or values
-        if given is None or (rows and values):
-            message = f"{what} has {'both rows and values' if given else 'no rows'}"
-            reader.note("SF214", message, (values or self.entry).key_span, EXAMPLE)
+        rows, values, latex = table.get("rows"), table.get("values"), table.get("latex")
+        many = list(filter(None, (rows, values, latex)))
+        if len(many) != 1:
+            message = f"{what} has {' and '.join(each.key for each in many) or 'no rows'}"
+            reader.note("SF214", message, (many[-1] if many else self.entry).key_span, EXAMPLE)
+            return
+        (given,) = many
+        if given is latex:
+            yield from self._typed(given)
             return
         items: tuple[Value, ...] = (given.value,)
         if given is rows:
@@ -131,6 +132,16 @@ class _TableReading:
                 reader.note("SF103", f"{what} has more than {MOST_ENTRIES} entries", item.span, "split it")
                 return
             yield row
+
+    def _typed(self, entry: KeyValue) -> Iterator[PrintedRow]:
+        """Yield the lists of numbers of a tabular."""
+        text = self.reader.string(entry, f"latex of {self.what}")
+        found = None if text is None else self.reader.read(lambda text: lists_of(cells_of(text)), text)
+        if found == ():
+            hint = "a column that counts 1, 2, 3 makes the other columns lists; else rows are"
+            self.reader.note("SF208", f"latex of {self.what} has no list of numbers", entry.value.span, hint)
+        for each in found or ():
+            yield PrintedRow((), each.entries, entry.value.span, each.heading)
 
     def _row(self, item: Value) -> PrintedRow | None:
         reader, what = self.reader, f"a row of {self.what}"

@@ -270,6 +270,7 @@ def _printed_table() -> Schema:
         "prints": _said(VALUE, "what is printed of a root: " + ", ".join(ROOT_QUANTITIES)),
         "rows": rows,
         "values": _said(values, "the only row"),
+        "latex": _said(TEXT, "the tabular as it is typed, in place of rows"),
         "source": _said(TEXT, "where it is printed"),
         "doc": TEXT,
     }

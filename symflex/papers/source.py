@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 from symflex.errors import Diagnostic, Source, Span, SpecError, Text
+from symflex.papers.tabular import ARRAYS, LONGEST_TABLE
 
 CODE: Final = "SF115"  # LaTeX that is not read, or can be read in two ways
 LONGEST: Final = 20_000  # characters of a formula, and tokens that macros make of it
@@ -521,6 +522,7 @@ class Paper:
     """What a file and those that it reads hold, in their order."""
 
     displays: list[Display] = field(default_factory=list)
+    arrays: list[Text] = field(default_factory=list)  # what is in its tabulars
     macros: dict[str, Macro] = field(default_factory=dict)
     environments: dict[str, str] = field(default_factory=dict)  # those that stand for another one
     notes: list[Diagnostic] = field(default_factory=list)  # files that are not there
@@ -628,7 +630,18 @@ class _PaperScanner:
             stop = self.value.find(rf"\end{{{match[1]}}}", match.end())
             return stop if stop >= 0 else len(self.value)
         name = self.paper.environments.get(name, name)
+        if name in ARRAYS:
+            return self.array(match.end(), match[1])
         return self.display(name, start, match.end(), match[1]) if name in DISPLAYED else match.end()
+
+    def array(self, begin: int, name: str) -> int:
+        """Take a tabular; its formulas are read as those of a sentence."""
+        end = self.value.find(rf"\end{{{name}}}", begin)
+        if 0 <= end <= begin + LONGEST_TABLE:
+            if len(self.paper.arrays) >= MOST_DISPLAYS:
+                raise too_large(self.text.at(begin, end), f"this paper has more than {MOST_DISPLAYS} tables")
+            self.paper.arrays.append(Text(self.value[begin:end], self.text.at(begin, end)))
+        return begin
 
     def display(self, name: str, start: int, end: int, typed: str) -> int:
         """Take a displayed environment; ``typed`` is its name, or the macro that begins it."""

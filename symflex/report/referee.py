@@ -16,8 +16,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final, Literal
 
-from symflex.audit import Audit, judge
-from symflex.audit.text import VERDICTS
+from symflex.audit import Audit, TableAudit, explained_by_print, judge, judge_array
+from symflex.audit.text import VERDICTS, table_json, table_text
 from symflex.budget import spend
 from symflex.errors import BudgetError, ModelError, Span, SpecError, SymflexError, counted, no_such
 from symflex.expressions import (
@@ -118,6 +118,28 @@ def referee(paper: Paper, models: Sequence[Model], only: str | None = None) -> t
     audits = [j.repaired or j.audit for j in found]
     scales = dict.fromkeys(a.ratio for a in audits if a is not None and a.ratio is not None)
     return tuple(_with_scale(j, scales) for j in found)
+
+
+@dataclass(frozen=True)
+class JudgedTable:
+    """A tabular of a paper, and what was found about its numbers; None if they are not about the models."""
+
+    span: Span
+    audit: TableAudit | None
+    reason: str = ""  # why it is not judged
+
+
+def referee_tables(paper: Paper, models: Sequence[Model]) -> tuple[JudgedTable, ...]:
+    """Return the tables of a paper in their order, each list of numbers compared with poles of the models."""
+    judged = []
+    for array in paper.arrays:
+        try:
+            found = judge_array(array, models)
+        except SpecError as error:
+            judged.append(JudgedTable(array.span, None, error.diagnostics[0].message))
+            continue
+        judged.append(JudgedTable(array.span, None if found is None else explained_by_print(found)))
+    return tuple(judged)
 
 
 @dataclass(frozen=True)
@@ -554,7 +576,9 @@ def _with_scale(judged: JudgedFormula, scales: Iterable[Expression]) -> JudgedFo
 # --- what is shown ---
 
 
-def referee_document(paper: str, judged: Sequence[JudgedFormula]) -> dict[str, object]:
+def referee_document(
+    paper: str, judged: Sequence[JudgedFormula], tables: Sequence[JudgedTable] = ()
+) -> dict[str, object]:
     """Return the document ``symflex referee --json`` prints."""
     return {
         "schema": SCHEMA,
@@ -574,11 +598,19 @@ def referee_document(paper: str, judged: Sequence[JudgedFormula]) -> dict[str, o
             }
             for j in judged
         ],
-        "tables": [],
+        "tables": [
+            {"line": each.span.line, "file": each.span.origin.source.name}
+            | (
+                {"verdict": "other model", "reason": each.reason or None}
+                if each.audit is None
+                else table_json(each.audit)
+            )
+            for each in tables
+        ],
     }
 
 
-def referee_text(judged: Sequence[JudgedFormula]) -> str:
+def referee_text(judged: Sequence[JudgedFormula], tables: Sequence[JudgedTable] = ()) -> str:
     """Return the verdicts as text."""
     blocks = []
     for j in judged:
@@ -588,14 +620,29 @@ def referee_text(judged: Sequence[JudgedFormula]) -> str:
         blocks.append("\n".join(lines))
     count = {verdict: sum(j.verdict == verdict for j in judged) for verdict in SAID}
     total = ", ".join(f"{n} {verdict}" for verdict, n in count.items() if n)
+    shown = [f"table, line {t.span.line}   {_table_said(t)}" for t in tables]
     return "\n\n".join(
-        [*blocks, f"{counted(len(judged), 'formula')}: {total}" if judged else "no displayed formulas"]
+        [
+            *blocks,
+            *shown,
+            f"{counted(len(judged), 'formula')}: {total}" if judged else "no displayed formulas",
+        ]
     )
 
 
-def referee_page(title: str, judged: Sequence[JudgedFormula]) -> Report:
-    """Return a page with the formulas beside their verdicts."""
+def _table_said(judged: JudgedTable) -> str:
+    if judged.audit is None:
+        return "not about the poles of these models" + (f": {judged.reason}" if judged.reason else "")
+    return table_text(judged.audit).removeprefix(judged.audit.table.name).strip()
+
+
+def referee_page(title: str, judged: Sequence[JudgedFormula], tables: Sequence[JudgedTable] = ()) -> Report:
+    """Return a page with the formulas beside their verdicts, and what is wrong in tables."""
     sections = [Section(j.where, tuple(_shown(j)), f"formula-{i + 1}") for i, j in enumerate(judged)]
+    sections += [
+        Section(f"table, line {t.span.line}", (text(Code(_table_said(t))),), f"table-{i + 1}")
+        for i, t in enumerate(tables)
+    ]
     return Report(title, "printed formulas against models", "", tuple(sections), {}, (), 0)
 
 
@@ -665,4 +712,13 @@ def errata_latex(judged: Sequence[JudgedFormula]) -> str:
     return "\n".join([r"\begin{itemize}", *items, r"\end{itemize}", ""]) if items else "% no errata\n"
 
 
-__all__ = ["JudgedFormula", "errata_latex", "referee", "referee_document", "referee_page", "referee_text"]
+__all__ = [
+    "JudgedFormula",
+    "JudgedTable",
+    "errata_latex",
+    "referee",
+    "referee_document",
+    "referee_page",
+    "referee_tables",
+    "referee_text",
+]

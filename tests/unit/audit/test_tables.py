@@ -155,6 +155,27 @@ def test_one_wrong_entry_of_few_digits_gets_no_explanation():
     assert not judged(CHAIN, 'prints = "omega"\nvalues = ["27.2", "145."]').slip
 
 
+TABULAR = r"""
+\begin{tabular}{|c|c|c|} \hline
+Mode & \multicolumn{2}{c|}{Frequency (Hz)} \\ \cline{2-3}
+ & Present & FEM \\ \hline
+1 & 28.336 & 28.34 \\
+2 & $177{,}58$ & 171.6 \\
+3 & \textbf{497.23}$^{a}$ & -- \\ \hline
+\end{tabular}
+"""
+
+
+def test_a_tabular_is_read_as_it_is_typed():
+    # The cantilever's frequencies are those of Blevins' wavenumbers: 28.336, 177.58 and 497.23 Hz.
+    found = judged(BEAM, f"latex = '''{TABULAR}'''")
+    assert [(row.heading, row.entries) for row in found.table.rows] == [
+        ("Frequency (Hz) Present", ("28.336", "177.58", "497.23")),
+        ("FEM", ("28.34", "171.6", "-")),
+    ]
+    assert (found.reading, verdicts(found)) == ("f [Hz]", ["right"] * 4 + ["wrong", "gap"])
+
+
 def test_zeros_and_damping_ratios():
     # X/F has no zeros; Y/F those of m_1 on both springs, sqrt(11000).
     assert judged(CHAIN, 'of = "zeros"\ntf = "Y/F"\nprints = "omega"\nvalues = ["104.88"]').verdict == "right"
@@ -174,6 +195,8 @@ def test_zeros_and_damping_ratios():
         ('prints = "x"\nvalues = ["1"]', "SF212"),
         ('prints = "k_1"\nvalues = ["1"]', "SF208"),
         ('prints = "omega*q"\nvalues = ["1"]', "SF210"),
+        ("latex = 'a & b'", "SF208"),
+        ('values = ["1"]\nlatex = "1 & 2"', "SF214"),
         ('values = ["1,5"]', "SF206"),
         ('values = ["1e999"]', "SF206"),
         ("values = [true]", "SF206"),

@@ -9,7 +9,14 @@ from symflex.model import Model
 from symflex.papers.source import read_text
 from symflex.pipeline import loads
 from symflex.report.page import report_page
-from symflex.report.referee import errata_latex, referee, referee_document, referee_page, referee_text
+from symflex.report.referee import (
+    errata_latex,
+    referee,
+    referee_document,
+    referee_page,
+    referee_tables,
+    referee_text,
+)
 
 MODEL = """
 symflex = 1
@@ -92,3 +99,36 @@ def test_brackets_left_out_after_a_root_are_named(model: Model) -> None:
     (one,) = judged(model, paper)
     assert one.verdict == "different"
     assert one.slip
+
+
+CHAIN = """
+symflex = 1
+parameters = { m_1 = "1 kg", m_2 = "3 kg", m_3 = "2 kg", k = "4 kN/m" }
+inputs = { F = { force = "x" } }
+outputs = { X = "x" }
+[elements]
+a = { type = "mass", at = "x", m = "m_1" }
+b = { type = "mass", at = "y", m = "m_2" }
+c = { type = "mass", at = "z", m = "m_3" }
+s = { type = "spring", between = ["ground", "x"], k = "k" }
+t = { type = "spring", between = ["x", "y"], k = "k" }
+u = { type = "spring", between = ["y", "z"], k = "k" }
+"""
+TABLES = r"""
+\begin{tabular}{lcc} Mode & Present & Test \\ \hline
+1 & 2.9843 & 3.5 \\ 2 & 9.2865 & 9.2 \\ 3 & 15.023 & 15.9 \\ \hline \end{tabular}
+\begin{tabular}{lcc} part & mass & length \\ A & 1.5 & 300 \\ B & 17 & 4 \\ C & 1 & 2 \end{tabular}
+"""
+
+
+def test_tables_near_the_poles_of_a_model_are_judged():
+    # numpy.linalg.eigh of the chain: 2.984361, 9.286529 and 15.023461 Hz.
+    first, second = referee_tables(read_text(Text.alone("paper.tex", TABLES)), [loads(CHAIN)])
+    assert first.audit is not None
+    assert first.audit.reading == "f [Hz]"
+    assert [e.verdict for e in first.audit.entries] == ["rounded", "right", "right"]
+    assert second.audit is None
+    document = referee_document("paper.tex", (), (first, second))
+    assert [t["verdict"] for t in document["tables"]] == ["rounded", "other model"]
+    assert "not about the poles" in referee_text((), (first, second))
+    assert "badly rounded" in report_page(referee_page("paper.tex", (), (first, second)))
