@@ -450,8 +450,11 @@ def with_candidates(problems: Sequence[Diagnostic], published: Published, model:
         if problem.code != "SF210" or problem.span is None or node is None:
             found.append(problem)
             continue
-        counts = {p: disagreeing(node.name, p) for p in model.parameters if p.name not in used}
-        fitting = [p for p in counts if counts[p] == min(counts.values())]
+        counts = {p: disagreeing(node.name, p) for p in model.parameters}
+        least = min(counts.values(), default=0)
+        # Where every parameter fits alike, the place says nothing.
+        tells = any(count > least for count in counts.values())
+        fitting = [p for p in counts if tells and counts[p] == least and p.name not in used]
         listed = ", ".join(f"{p.name} [{p.unit or 1}]" for p in fitting[:CANDIDATES])
         could = f"; by its place it could be {listed}" if listed else ""
         hint = f"tie it in [notation]: '{problem.span.text[:40]}' = \"...\"{could}; or define it in 'where'"

@@ -37,6 +37,7 @@ from symflex.expressions import (
     Sum,
     fold,
     format_expression,
+    is_longer,
     is_number,
     names,
     negative,
@@ -51,6 +52,7 @@ from symflex.expressions import (
 from symflex.papers.labels import ACCENTS, GREEK
 from symflex.papers.source import (
     CLOSERS,
+    DEEPEST,
     DELIMITERS,
     FONTS,
     MATRICES,
@@ -69,15 +71,16 @@ from symflex.papers.source import (
     tokens_of,
     with_depth,
 )
+from symflex.quantities import unit_named
 
 LAPLACE: Final = "s"
 IMAGINARY: Final = "ij"
-DEEPEST: Final = 48  # levels of groups
-MOST_TERMS: Final = 32  # of a product or sum that is written out
+MOST_TERMS: Final = 64  # of products and sums that are written out
 MOST_OPEN: Final = 12  # places that can be read in two ways
 LONGEST_RUN: Final = 8  # letters of a name that are typed side by side
 LARGEST_MATRIX: Final = 4  # whose determinant is expanded
 MOST_ROWS: Final = 12
+MOST_PARTS: Final = 20_000  # of a product of matrices, or of a determinant
 FRACTIONS: Final = frozenset(rf"\{name}" for name in "frac dfrac tfrac cfrac nicefrac sfrac".split())
 CALLIGRAPHIC: Final = {r"\mathcal": "cal", r"\mathscr": "cal", r"\mathbb": "bb", r"\mathfrak": "frak"}
 ACCENTED: Final = {
@@ -409,7 +412,7 @@ class _LatexReader:
     ) -> None:
         self.tokens, self.notation, self.choices = list(tokens), notation, choices
         self.bound = dict(bound)  # the index of a product that is written out
-        self.at = self.depth = 0
+        self.at = self.depth = self.written = 0
         self.open: dict[int, int] = {}  # where there are how many readings
         self.built: dict[int, Expression] = {}  # what was made of them
         self.typed: dict[str, str] = {}  # how each name is typed
@@ -481,10 +484,20 @@ class _LatexReader:
             self.refuse("a control character is not read")
         self.refuse(f"'{text[:40]}' is not read here")
 
-    def sum(self) -> Value:
+    def enter(self) -> None:
+        """Count a level of nesting; what ends normally leaves it."""
         self.depth += 1
         if self.depth > DEEPEST:
-            self.refuse(f"groups are nested too deeply; at most {DEEPEST} levels are allowed")
+            self.refuse("this is nested too deeply", "name parts of it")
+
+    def read_inner(self, tokens: Sequence[LatexToken]) -> Value:
+        """Return what a part of the formula is that is read by itself."""
+        reader = _LatexReader(tokens, self.notation, {}, self.bound)
+        reader.depth = self.depth + 1
+        return reader.everything()
+
+    def sum(self) -> Value:
+        self.enter()
         start = self.at
         terms: list[Value] = []
         while True:
@@ -535,7 +548,7 @@ class _LatexReader:
                     before = self.tokens[self.at - 1].text
                     message = f"the number after '{before}' could be a factor, an index or a power"
                     self.refuse(message, "write it in front, as x_2 or as x^2")
-                if isinstance(value, Number) and text in FONTS and self.tokens[self.at].is_spaced:
+                if text in FONTS and isinstance(value, Expression) and not names(value) and self.is_unit():
                     self.refuse("what follows this number may be a unit or a factor")
                 value = _product(value, self.operand(), self.span(start), self)
             else:
@@ -543,6 +556,12 @@ class _LatexReader:
         if isinstance(value, Expression):
             self.built.update(dict.fromkeys(set(self.open) - opened, value))
         return value
+
+    def is_unit(self) -> bool:
+        """Tell whether upright letters are the symbol of a unit, and no function or power of e."""
+        end = group_end(self.tokens, self.at + 1)
+        word = text_of(t for t in self.tokens[self.at + 1 : end] if t.text not in "{}")
+        return word not in IMAGINARY and unit_named(word) is not None and not self.upright_base()
 
     def signed_operand(self) -> Value:
         if self.text == "-":
@@ -597,11 +616,13 @@ class _LatexReader:
 
     def operand(self) -> Value:
         """Return an atom with its powers."""
+        self.enter()
         start = self.at
         value, is_bare = self.atom()
-        if is_bare:
-            return self.powers(value, start)
-        return value
+        if is_bare and isinstance(value, Expression):
+            self.ratio_applied(value)
+        self.depth -= 1
+        return self.powers(value, start) if is_bare else value
 
     def powers(self, value: Value, start: int) -> Value:
         raised = False
@@ -1042,6 +1063,12 @@ class _LatexReader:
 
     def base(self, count: int) -> tuple[str, list[str], int, str]:
         """Return letters, accents, where they end, and an index that stands under an accent."""
+        self.enter()
+        found = self.unnested_base(count)
+        self.depth -= 1
+        return found
+
+    def unnested_base(self, count: int) -> tuple[str, list[str], int, str]:
         text = self.text
         if text in ACCENTED:
             self.take()
@@ -1285,8 +1312,23 @@ class _LatexReader:
             inner, self.at = inner[2:], end
         if not inner or text_of(inner) == "x":
             return value
-        point = _LatexReader(inner, self.notation, {}, self.bound).everything()
+        point = self.read_inner(inner)
         return Call(name, self.expression_of(point), order, span=value.span)
+
+    def ratio_applied(self, value: Expression) -> None:
+        r"""Skip the argument of a quotient or bracket of functions, as in ``\frac{X}{F}(s)``."""
+        end = self.end_of_bracket(self.at) if self.text == "(" else -1
+        typed = (
+            text_of(t for t in self.tokens[self.at + 1 : end - 1] if t.text not in FONTS) if end > 0 else ""
+        )
+        if typed not in ARGUMENTS or not names(value):
+            return
+        constants = set(self.notation.names.values()) - self.notation.signals
+        is_sure = not any(
+            isinstance(n, Sum) or (isinstance(n, Name) and n.name in constants) for n in nodes(value)
+        )
+        if is_sure or not self.choose(self.at, 2):
+            self.at = end
 
     def applied(self, value: Expression) -> None:
         """Skip the argument of a function of s or t; refuse what could be a factor as well."""
@@ -1369,6 +1411,8 @@ class _LatexReader:
             self.refuse("a determinant needs a square matrix", at=start)
         if len(value.rows) > LARGEST_MATRIX:
             self.refuse(f"a determinant of more than {LARGEST_MATRIX} rows is not expanded", at=start)
+        if is_longer([e for row in value.rows for e in row], MOST_PARTS // 24):
+            self.refuse("this determinant is too long to be written out", at=start)
         return replace(_determinant(value.rows), span=self.span(start))
 
     def written_out(self) -> Value:
@@ -1387,11 +1431,14 @@ class _LatexReader:
         if match is None or not re.fullmatch(r"\d{1,3}", upper):
             self.refuse(f"a {what} whose ends are not numbers is not read", "write out every term", start)
         first, last = int(match[2]), int(upper)
-        if not 0 <= last - first < MOST_TERMS:
-            self.refuse(f"a {what} of no terms, or of more than {MOST_TERMS}, is not read", at=start)
+        if last < first:
+            self.refuse(f"a {what} of no terms is not read", at=start)
         body, outer = self.at, self.bound.get(match[1])
         values: list[Value] = []
         for k in range(first, last + 1):
+            self.written += 1
+            if self.written > MOST_TERMS:
+                self.refuse(f"products and sums of more than {MOST_TERMS} terms are not read", at=start)
             self.at = body
             self.bound[match[1]] = k
             values.append(self.product())
@@ -1426,7 +1473,7 @@ class _LatexReader:
             self.refuse("a derivative is not read here", "write it with s, or as x'", start)
         self.at = stop
         inner = above[len(tokens_of(Text.alone("", head[0]))) :]
-        operand = _LatexReader(inner, self.notation, {}, self.bound).everything() if inner else self.operand()
+        operand = self.read_inner(inner) if inner else self.operand()
         span = self.span(start)
         if match[2] == "t" and not (motion == "time" and isinstance(operand, Name)):
             return _product(_differentiation(order, span), operand, span, self)
@@ -1498,6 +1545,8 @@ def _product(a: Value, b: Value, span: Span, reader: _LatexReader) -> Value:
             tuple(sum_of(product_of(pair) for pair in zip(row, column, strict=True)) for column in columns)
             for row in a.rows
         ]
+        if is_longer([e for row in rows for e in row], MOST_PARTS):
+            reader.refuse("this product of matrices is too long to be written out")
         whole = Matrix(tuple(rows), span)
         return whole.rows[0][0] if len(rows) == 1 and len(rows[0]) == 1 else whole
     if isinstance(a, Matrix) or isinstance(b, Matrix):
@@ -1538,6 +1587,8 @@ def _inverse(value: Matrix, reader: _LatexReader) -> Matrix:
     rows, size = value.rows, len(value.rows)
     if size != len(rows[0]) or size > LARGEST_MATRIX:
         reader.refuse("the inverse of this matrix is not read")
+    if is_longer([e for row in rows for e in row], MOST_PARTS // 24):
+        reader.refuse("the inverse of this matrix is too long to be written out")
     whole = _determinant(rows)
     if is_number(whole, 0):
         reader.refuse("this matrix has no inverse")
@@ -1570,6 +1621,10 @@ def _in_s(expression: Expression, notation: PaperNotation, span: Span) -> Expres
     frequency = next((w for w in ("omega", "Omega") if w in used and w not in known), None)
     if not units:
         return expression
+    if frequency is not None and LAPLACE in used:
+        raise refusal(
+            span, f"s and {units[0]}*{frequency} stand side by side", "name one of them in [notation]"
+        )
     if len(units) > 1:
         raise refusal(span, "both i and j look like the imaginary unit", "name one of them in [notation]")
     if frequency is None:

@@ -28,7 +28,7 @@ LONGEST_FILE: Final = 2_000_000  # characters of a paper, with the files that it
 MOST_FILES: Final = 50
 MOST_DISPLAYS: Final = 1_000
 MOST_EXPANSIONS: Final = 5_000  # macros that are replaced in one formula
-DEEPEST: Final = 48  # levels of groups, brackets and environments
+DEEPEST: Final = 80  # levels of groups, brackets, functions and environments
 
 
 def commands(names: str) -> frozenset[str]:
@@ -214,8 +214,10 @@ def statements(tokens: Sequence[LatexToken]) -> tuple[PrintedEquation, ...]:
     return tuple(found)
 
 
-def prepared(tokens: Sequence[LatexToken]) -> list[LatexToken]:
+def prepared(tokens: Sequence[LatexToken], depth: int = 0) -> list[LatexToken]:
     r"""Return tokens without what does not show or only shows: sizes of brackets, labels, spaces."""
+    if depth > DEEPEST:
+        raise too_large(tokens[0].span, f"commands are nested more than {DEEPEST} times")
     out: list[LatexToken] = []
     i, is_spaced = 0, False
     while i < len(tokens):
@@ -228,19 +230,19 @@ def prepared(tokens: Sequence[LatexToken]) -> list[LatexToken]:
             # \left. and \right. are brackets that do not show.
             i += text in (r"\left", r"\right") and i < len(tokens) and tokens[i].text == "."
             if text in (r"\boxed", r"\ensuremath", r"\mathclap", r"\fbox", r"\smash"):
-                out += _unwrapped(tokens, i)
+                out += _unwrapped(tokens, i, depth)
                 i = group_end(tokens, i)
         elif text in WITHOUT_ARGUMENT | WITHOUT_FIRST:
             i = skip_arguments(tokens, i)
         elif text in BRACED:
-            out += _unwrapped(tokens, i)
+            out += _unwrapped(tokens, i, depth)
             i = group_end(tokens, i)
             if i < len(tokens) and tokens[i].text == BRACED[text]:
                 i = group_end(tokens, i + 1)
         elif (
             text in FONTS and text not in SWITCHES and has_relation(tokens[i + 1 : group_end(tokens, i) - 1])
         ):
-            out += _unwrapped(tokens, i)
+            out += _unwrapped(tokens, i, depth)
             i = group_end(tokens, i)
         else:
             out.append(token._replace(is_spaced=is_spaced))
@@ -248,12 +250,12 @@ def prepared(tokens: Sequence[LatexToken]) -> list[LatexToken]:
     return out
 
 
-def _unwrapped(tokens: Sequence[LatexToken], at: int) -> list[LatexToken]:
+def _unwrapped(tokens: Sequence[LatexToken], at: int, depth: int) -> list[LatexToken]:
     """Return what an argument holds; a formula keeps its braces, an equation does not."""
     end = group_end(tokens, at)
     if tokens[at : at + 1] and tokens[at].text != "{":
-        return prepared(tokens[at:end])
-    whole = prepared(tokens[at + 1 : end - 1])
+        return prepared(tokens[at:end], depth + 1)
+    whole = prepared(tokens[at + 1 : end - 1], depth + 1)
     return whole if has_relation(whole) or not whole else [tokens[at], *whole, tokens[end - 1]]
 
 
@@ -514,7 +516,7 @@ VERBATIM: Final = frozenset("verbatim lstlisting comment minted Verbatim filecon
 DEFINING: Final = commands(
     "newcommand renewcommand providecommand DeclareMathOperator def gdef let newenvironment"
 )
-_MARK: Final = re.compile(r"\\verb\*?([^A-Za-z\s]).*?\1|%[^\n]*|\\[A-Za-z@]+\*?|\\.|\$\$?", re.DOTALL)
+_MARK: Final = re.compile(r"\\verb\*?([^A-Za-z\s]).{0,500}?\1|%[^\n]*|\\[A-Za-z@]+\*?|\\.|\$\$?", re.DOTALL)
 
 
 @dataclass
@@ -578,6 +580,7 @@ class _PaperScanner:
     def __init__(self, text: Text, paper: Paper, folder: Path | None, opened: tuple[Path, ...]) -> None:
         self.text, self.paper, self.folder, self.opened = text, paper, folder, opened
         self.value = text.value
+        self.searched: dict[str, int] = {}  # up to where there is none of what would close mathematics
 
     def scan(self) -> None:
         at = 0
@@ -592,6 +595,7 @@ class _PaperScanner:
             if stop >= 0:
                 self.add(end, stop, is_inline=word in ("$", r"\("))
                 return stop + len(closing)
+            self.lost(word, start, end, is_inline=word in ("$", r"\("))
         elif word in (r"\begin", r"\end"):
             return self.environment(word, start, end)
         elif word in DEFINING:
@@ -614,11 +618,14 @@ class _PaperScanner:
 
     def find(self, closing: str, at: int) -> int:
         """Return where something closes, comments and escaped dollars passed over; -1 if nowhere."""
-        for match in _MARK.finditer(self.value, at):
+        stop, until = at + LONGEST, at
+        for match in _MARK.finditer(self.value, max(at, self.searched.get(closing, 0))):
+            until = match.start()
             if match[0] == closing or (closing.startswith("$") and match[0].startswith("$")):
-                return match.start()
-            if match.start() - at > LONGEST:
-                return -1
+                return until
+            if until > stop:
+                break
+        self.searched[closing] = until
         return -1
 
     def environment(self, word: str, start: int, end: int) -> int:
@@ -666,9 +673,18 @@ class _PaperScanner:
                 stop = match.start() + (len(word) if word != match[0] else 0)
                 self.add(end, match.start(), name=name)
                 return max(stop, match.end())
-        problem = Diagnostic(CODE, f"this '{typed[:40]}' has no end", self.text.at(start, end))
-        self.paper.displays.append(Display((), self.text.at(start, end), is_inline=False, problem=problem))
+        self.lost(typed, start, end)
         return end
+
+    def lost(self, typed: str, start: int, end: int, *, is_inline: bool = False) -> None:
+        """Note mathematics that has no end."""
+        problem = Diagnostic(CODE, f"this '{typed[:40]}' has no end", self.text.at(start, end))
+        self.keep(Display((), self.text.at(start, end), is_inline, problem))
+
+    def keep(self, display: Display) -> None:
+        if len(self.paper.displays) >= MOST_DISPLAYS:
+            raise too_large(display.span, f"this paper has more than {MOST_DISPLAYS} formulas")
+        self.paper.displays.append(display)
 
     def add(self, start: int, end: int, *, is_inline: bool = False, name: str = "") -> None:
         """Take mathematics."""
@@ -676,8 +692,6 @@ class _PaperScanner:
         if is_inline and "=" not in inner and r"\equiv" not in inner:
             return
         span = self.text.at(start + len(inner) - len(inner.lstrip()), end)
-        if len(self.paper.displays) >= MOST_DISPLAYS:
-            raise too_large(span, f"this paper has more than {MOST_DISPLAYS} formulas")
         tokens: tuple[LatexToken, ...] = ()
         problem = None
         try:
@@ -687,7 +701,7 @@ class _PaperScanner:
             tokens = tuple(expanded(taken, self.paper.macros))
         except SpecError as error:
             problem = error.diagnostics[0]
-        self.paper.displays.append(Display(tokens, span, is_inline, problem))
+        self.keep(Display(tokens, span, is_inline, problem))
 
     def define(self, word: str, start: int, end: int) -> int:
         """Take a definition; one that is not understood is passed over, and its macro stays as it is."""
@@ -695,7 +709,7 @@ class _PaperScanner:
         try:
             tokens = tokens_of(rest)
             name, macro, stop = _definition(word, tokens)
-        except (SpecError, IndexError):
+        except (SpecError, IndexError, ValueError):
             return end
         if isinstance(macro, str):
             self.paper.environments[name] = macro

@@ -19,7 +19,16 @@ from typing import Final, Literal
 from symflex.audit import Audit, TableAudit, explained_by_print, judge, judge_array
 from symflex.audit.text import VERDICTS, table_json, table_text
 from symflex.budget import spend
-from symflex.errors import BudgetError, ModelError, Span, SpecError, SymflexError, counted, no_such
+from symflex.errors import (
+    BudgetError,
+    Diagnostic,
+    ModelError,
+    Span,
+    SpecError,
+    SymflexError,
+    counted,
+    no_such,
+)
 from symflex.expressions import (
     Call,
     Expression,
@@ -29,6 +38,7 @@ from symflex.expressions import (
     Quotient,
     Sum,
     format_expression,
+    is_longer,
     is_number,
     names,
     negative,
@@ -41,7 +51,7 @@ from symflex.expressions import (
     with_children,
 )
 from symflex.model import Model, Published
-from symflex.model.analysis import notation_of_model, readable_names
+from symflex.model.analysis import notation_of_model, readable_names, with_candidates
 from symflex.papers.formula import (
     PaperNotation,
     PrintedSymbol,
@@ -69,6 +79,9 @@ SAID: Final[Mapping[Judgement, tuple[str, Tone]]] = {
 }
 DEFINES: Final = "it defines"
 MOST_PAIRS: Final = 6  # transfer functions that a formula without a left side is compared with
+MOST_LISTED: Final = 6  # symbols without a meaning
+MOST_SIDES: Final = 20
+MOST_NODES: Final = 1_000  # parts of a formula and its definitions; a Timoshenko beam's has some 300
 SHORT: Final = 2  # changes up to which a formula without a left side is called a misprint of a function
 
 
@@ -84,7 +97,8 @@ class JudgedFormula:
     slip: str = ""  # what is wrong, with what would be right
     model: Model | None = None  # what it is about
     audit: Audit | None = None
-    repaired: Audit | None = None  # of the formula without a slip of print
+    misprint: str = ""  # a slip of print
+    repaired: Audit | None = None  # of the formula without it, or times the factor that is left out
 
     @property
     def said(self) -> str:
@@ -204,6 +218,8 @@ class _Court:
             raise _Unjudged("other model", "it is no equation")
         if equation.nearly is not None:
             raise _Unjudged("not read", "it holds only nearly, by its sign")
+        if len(equation.sides) > MOST_SIDES:
+            raise _Unjudged("not read", f"it has more than {MOST_SIDES} sides")
         notation = self.notation(model)
         laplace = laplace_of(equation, notation)
         sides = [read_formula(side, notation, laplace=laplace) for side in equation.sides]
@@ -229,6 +245,8 @@ class _Court:
     ) -> JudgedFormula:
         """Return the verdict on a formula that is one of so many transfer functions."""
         lines = self.lines(formula, model, notation, item.equation.span)
+        if is_longer([formula, *(line for _, line in lines)], MOST_NODES):
+            raise _Unjudged("not read", f"it has more than {MOST_NODES} parts")
         answers: list[JudgedFormula] = []
         for tf in tfs[:MOST_PAIRS]:
             printed = Published(tf, formula, lines, None, "", item.equation.span, is_latex=True)
@@ -276,7 +294,7 @@ class _Court:
         meant = {*readable.constants, *readable.definitions}
         lines: dict[str, Expression] = {}
         needed: dict[Span, str] = {}
-        pending, unknown = [formula], list[str]()
+        pending, unknown = [formula], dict[str, Name]()
         while pending:
             for node in names(pending.pop()):
                 if not isinstance(node, Name) or node.name in lines:
@@ -285,15 +303,14 @@ class _Court:
                 if node.name in meant and (equation is None or node.name not in readable.definitions):
                     continue
                 if equation is None:
-                    unknown.append(node.name)
+                    unknown.setdefault(node.name, node)
                     continue
                 lines[node.name] = self.meaning(equation, model, notation, bound)
                 symbol = next(s.name for s, e in self.definitions.items() if e is equation)
                 needed[equation.span] = f"{DEFINES} {symbol} of line {where.line}"
                 pending.append(lines[node.name])
         if unknown:
-            listed = ", ".join(dict.fromkeys(unknown))
-            raise _Unjudged("not read", f"symbols without a meaning: {listed}; tie them in [notation]")
+            raise _untied(formula, tuple(lines.items()), unknown, model)
         self.used |= needed
         return tuple(lines.items())
 
@@ -330,6 +347,24 @@ def _in_radians(printed: Published, model: Model) -> Published:
     meant = {name: product_of([power(turn, count), Name(name)]) for name, count in cycles.items()}
     lines = tuple((name, substitute(line, meant)) for name, line in printed.where)
     return replace(printed, expression=substitute(printed.expression, meant), where=lines)
+
+
+def _untied(
+    formula: Expression, lines: tuple[tuple[str, Expression], ...], unknown: Mapping[str, Name], model: Model
+) -> _Unjudged:
+    """Return the verdict on a formula with symbols that mean nothing: what these could be, by their units."""
+    held = {n.name for e in (formula, *(e for _, e in lines)) for n in names(e) if isinstance(n, Name)}
+    if not held & {p.name for p in model.parameters}:
+        return _Unjudged("other model", "it has no symbol of the models")
+    problems = [Diagnostic("SF210", name, node.span) for name, node in [*unknown.items()][:MOST_LISTED]]
+    printed = Published(("", ""), formula, lines, is_latex=True)
+    said = []
+    for problem in with_candidates(problems, printed, model):
+        could = (problem.hint or "").partition("could be ")[2].partition(";")[0]
+        said.append(f"{problem.message} (by its place {could}?)" if could else problem.message)
+    more = ", ..." if len(unknown) > MOST_LISTED else ""
+    listed = ", ".join(said) + more
+    return _Unjudged("not read", f"symbols without a meaning: {listed}; tie them in [notation]")
 
 
 def _turned(base: str) -> str:
@@ -486,10 +521,10 @@ def _repaired(judged: JudgedFormula, court: _Court) -> JudgedFormula:
             spend()
             continue
         if audit.verdict == "equal":
-            return replace(judged, slip=words, repaired=audit)
+            return replace(judged, slip=words, misprint=words, repaired=audit)
         if audit.verdict == "differs" and (audit.ratio is not None or audit.changes):
             more = _ratio_said(audit) if audit.ratio is not None else _changes_said(audit)
-            return replace(judged, slip=f"{words}; then {more}", repaired=audit)
+            return replace(judged, slip=f"{words}; then {more}", misprint=words, repaired=audit)
     return judged
 
 
@@ -550,7 +585,7 @@ def _with_brackets(node: Expression) -> Expression:
 def _with_scale(judged: JudgedFormula, scales: Iterable[Expression]) -> JudgedFormula:
     """Return a formula judged anew with the factor that another formula of the paper lacks."""
     audit = judged.repaired or judged.audit
-    if judged.verdict != "different" or audit is None or audit.changes:
+    if judged.verdict != "different" or audit is None or audit.changes or audit.ratio is not None:
         return judged
     for ratio in scales:
         candidates = [("", audit.published)]
@@ -569,7 +604,7 @@ def _with_scale(judged: JudgedFormula, scales: Iterable[Expression]) -> JudgedFo
                 said.append(f"the factor {format_expression(ratio)} is left out, as in other formulas")
             else:
                 continue
-            return replace(judged, slip="; ".join(said), repaired=again)
+            return replace(judged, slip="; ".join(said), misprint=words or judged.misprint, repaired=again)
     return judged
 
 
@@ -700,6 +735,7 @@ def errata_latex(judged: Sequence[JudgedFormula]) -> str:
             f"for ${latex_expression(c.printed, labels)}$ read ${latex_expression(c.derived, labels)}$"
             for c in best.changes
         ]
+        said = [j.misprint, *said] if j.misprint else said
         if best.ratio is not None:
             said.append(f"divide the right side by ${latex_expression(best.ratio, labels)}$")
         elif best.published.scale is not None:
