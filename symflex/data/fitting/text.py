@@ -236,7 +236,8 @@ def _zeros(fit: ResonanceFit, r: int) -> Passage:
     modes, errors, free = fit.resonances, fit.standard_errors(), fit.problem.free
     lines = [f"{INDENT}zeros{fit.of_response(r)}"]
     if free.gain:
-        gain = f"{INDENT}gain {significant(modes.gain[r], errors.gain[r])} {fit.gain_unit(r)}".rstrip()
+        unit = "" if fit.gain_unit(r) == "1" else fit.gain_unit(r)
+        gain = f"{INDENT}gain {significant(modes.gain[r], errors.gain[r])} {unit}".rstrip()
         lines.append(f"{gain}, standard error {errors.gain[r]:.2g}")
     if free.lag:
         lag = significant(modes.lag[r], errors.lag[r])
@@ -492,10 +493,10 @@ def significant(value: float, error: float) -> str:
 def ends_of_band(low: float, high: float) -> tuple[str, str]:
     """Return the ends of a band [Hz] in four digits, or as many as tell its width.
 
-    >>> ends_of_band(1.0, 50.0), ends_of_band(10270325.0, 10299976.0)
-    (('1', '50'), ('10270320', '10299980'))
+    >>> ends_of_band(0.12345, 50.0), ends_of_band(10270325.0, 10299976.0)
+    (('0.1235', '50'), ('10270320', '10299980'))
     """
-    digits = 4 + max(0, ceil(-log10((high - low) / high))) if high > low else 4
+    digits = 4 + max(0, ceil(-log10((high - low) / high) - 0.5)) if high > low else 4
     rounded = [float(f"{x:.{digits}g}") for x in (low, high)]
     return f"{rounded[0]:.10g}", f"{rounded[1]:.10g}"
 

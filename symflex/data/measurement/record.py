@@ -164,6 +164,8 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
         arrays = signals_in(name, data) if suffix in UNIVERSAL else with_axes(arrays_in(name, data, suffix))
         if not arrays:
             return None
+        if suffix in UNIVERSAL and arrays["time"].size < FEWEST_SAMPLES:
+            raise _too_short(arrays["time"].size)
         return _asked_arrays(arrays, words, interval, name, stem) if asked else _of_arrays(arrays, name, stem)
     if not asked and not _may_be_record(data):
         return None
@@ -486,14 +488,18 @@ def _numbers(
     return list(np.array(good, float).T), [i for i, w in zip(lines, wrong.tolist(), strict=True) if not w]
 
 
+def _too_short(samples: int) -> DataError:
+    message = f"a record of {samples} samples; at least {FEWEST_SAMPLES} are needed"
+    return DataError(Diagnostic("SF605", message))
+
+
 def _even(
     times: Real, table: TextTable | None, lines: Sequence[int], guesses: list[str]
 ) -> tuple[float, bool]:
     """Return the sampling time, and whether the samples have to be made even first."""
     steps = np.diff(times)
     if times.size < FEWEST_SAMPLES:
-        message = f"a record of {times.size} samples; at least {FEWEST_SAMPLES} are needed"
-        raise DataError(Diagnostic("SF605", message))
+        raise _too_short(times.size)
     if not np.all(steps > 0):
         i = int(np.argmax(~(steps > 0))) + 1
         location = table.line(lines[i]) if table else None
@@ -657,7 +663,8 @@ def _sorted(
             sample = int(np.argmin(np.isfinite(values))) + 1
             message = f"'{name}': sample {sample} of '{channel[:40]}' is not a finite number"
             raise DataError(Diagnostic("SF603", message, None, "leave the line out"))
-    constant = next((c for c, x in channels if _INPUT.fullmatch(c) and np.ptp(x) == 0 and x[0]), None)
+    steady = [c for c, x in channels if _INPUT.fullmatch(c) and np.ptp(x) == 0 and x[0]]
+    constant = steady[0] if steady and len(channels) > len(steady) else None
     channels = _from_zero(channels, constant, guesses) if constant else channels
     dead = [channel for channel, values in channels if np.ptp(values) == 0]
     channels = [(c, x) for c, x in channels if c not in dead]

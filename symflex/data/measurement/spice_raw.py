@@ -45,6 +45,11 @@ def table_of_raw(data: bytes) -> bytes:
     body = data[end + width :]
     fields = dict(re.findall(r"^([\w. ]+):[ \t]*(\S.*)$", head, re.M))
     variables = re.findall(r"^\s*\d+\s+(\S+)\s+(\S+)", head.partition("Variables:\n")[2], re.M)
+    kinds = {word.lower() for word in variables[0]} if variables else set()
+    if not kinds & {"time", "frequency"}:
+        raise ValueError(
+            f"its first variable, {' '.join(sorted(kinds))[:40]}, is neither a time nor a frequency"
+        )
     size = fields.get("No. Points", "").strip()
     count, points = len(variables), int(size) if size.isdigit() and len(size) < 9 else 0  # noqa: PLR2004
     if not (1 < count <= MOST_VARIABLES and points <= MAX_LINES) or (kind == "Binary" and not points):
@@ -55,8 +60,7 @@ def table_of_raw(data: bytes) -> bytes:
     else:
         columns = _binary(body, count, points, flags)
     axis = np.real(columns[0])
-    is_time = variables[0][1].lower() == "time" or variables[0][0].lower() == "time"
-    columns[0] = np.abs(axis) if is_time else axis
+    columns[0] = np.abs(axis) if "time" in kinds else axis
     return _text(variables, columns)
 
 
@@ -77,7 +81,7 @@ def _binary(body: bytes, count: int, points: int, flags: list[str]) -> list[npt.
 
 def _listed(text: str, count: int, *, is_complex: bool) -> list[npt.NDArray[Any]]:
     """Return variables of a part in text: the number of a point, then the values of each variable."""
-    cells = text.split()
+    cells = re.sub(r",\s+", ",", text).split()
     if not cells or len(cells) % (count + 1):
         raise ValueError(f"{len(cells)} numbers are no points of {count} variables: it is cut short")
     table = [cells[i + 1 :: count + 1] for i in range(count)]

@@ -576,3 +576,9 @@ def test_nodes_of_a_circuit_keep_their_names(tmp_path):
     (found,) = read_measurement(written(tmp_path, CHIRP, PUSHED, head="time\tV(in)\tV(n001)", sep="\t"))
     assert found.name == "V(n001)/V(in)"
     assert found.unit == "1"
+
+
+def test_a_reference_that_never_changes_is_no_step_of_its_own():
+    rows = "\n".join(f"{i * STEP:.3f},3.2" for i in range(200))
+    with pytest.raises(DataError, match="no channel of numbers that changes"):
+        read_record("a.csv", f"TIME,REF1\n{rows}\n".encode(), "a")

@@ -91,3 +91,22 @@ def test_what_is_cut_short_or_claims_more_is_refused(tmp_path):
         with pytest.raises(DataError) as caught:
             read_measurement(path)
         assert caught.value.diagnostics[0].code == "SF601"
+
+
+def test_values_in_text_are_read_with_blanks_inside_complex_numbers(tmp_path):
+    head = "Title: x\nDate: Mon\nFlags: complex\nNo. Variables: 2\nNo. Points: 80\nVariables:\n"
+    head += "\t0\tfrequency\tfrequency\n\t1\tV(out)\tvoltage\nValues:\n"
+    rows = [
+        f"{i}\t\t{f!r},  0.0\n\t{h.real!r},{h.imag!r}\n"
+        for i, (f, h) in enumerate(zip(F.tolist(), H.tolist(), strict=True))
+    ]
+    (tmp_path / "a.raw").write_text(head + "".join(rows))
+    (found,) = read_measurement(tmp_path / "a.raw")
+    assert found.values == pytest.approx(H)
+
+
+def test_a_sweep_of_a_voltage_is_no_record_and_no_response(tmp_path):
+    names = [("V1", "voltage"), ("V(out)", "voltage")]
+    (tmp_path / "a.raw").write_bytes(raw([T, Y], names, "real forward", ("<f8", "<f4")))
+    with pytest.raises(DataError, match="neither a time nor a frequency"):
+        read_measurement(tmp_path / "a.raw")
