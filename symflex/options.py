@@ -648,6 +648,14 @@ class FitOptions:
     window: str | None = option(None, "--window", **WINDOW_OF_DATA)
     segments: int | None = option(None, "--segments", **SEGMENTS)
     estimator: str = option("h1", "--estimator", **ESTIMATOR)
+    hold: str = option(
+        "auto",
+        "--hold",
+        choices=("auto", "held", "joined", "smooth"),
+        **SHOWN,
+        help="Time records: the input is held between samples, lines join them, or it has no frequency above "
+        "half the sampling rate.",
+    )
     driving: str | None = option(
         None,
         "--driving",

@@ -259,6 +259,7 @@ def fit(
     allow_outside: Sequence[str | Path] = (),
     estimator: str = "h1",
     segments: int | None = None,
+    hold: Literal["auto", "held", "joined", "smooth"] = "auto",
 ) -> Fit: ...
 
 
@@ -302,6 +303,7 @@ def fit(
     allow_outside: Sequence[str | Path] = (),
     estimator: str = "h1",
     segments: int | None = None,
+    hold: Literal["auto", "held", "joined", "smooth"] = "auto",
 ) -> Fit | FittedParameters:
     """Fit resonances, or parameters of a specification, to measured frequency responses.
 
@@ -348,7 +350,10 @@ def fit(
     estimator : str
         Time records: ``h1`` for noise at the output, ``h2`` for noise at the input.
     segments : int, optional
-        Time records: average this many segments by Welch's method; by default it depends on the input.
+        Time records: average this many segments by Welch's method, and fit the response that gives.
+    hold : str
+        Time records: the input is ``held`` between samples, ``joined`` by lines, or ``smooth``, without
+        frequencies above half the sampling rate.
 
     Raises
     ------
@@ -381,7 +386,8 @@ def fit(
 
     given = [data] if isinstance(data, str | Path | MeasuredResponse) else list(data)
     responses: list[MeasuredResponse] = []
-    estimate = Estimate(estimator, segments, window or "hann")
+    is_chosen = bool(segments or window or estimator != Estimate.estimator)
+    estimate = Estimate(estimator, segments, window or "hann", is_chosen)
     for one in given:
         if isinstance(one, MeasuredResponse):
             responses.append(one)
@@ -401,6 +407,8 @@ def fit(
         is_delay_free=delay,
         slope=slope,
         allow_outside=allow_outside,
+        hold=hold,
+        band=band,
     )
     every = prepared(responses, band, averages, window)
     return (

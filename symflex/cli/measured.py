@@ -161,7 +161,8 @@ def _estimate(given: FitOptions | MeasureOptions) -> Estimate:
     """Return how responses of time records are estimated."""
     from symflex.data.measurement import Estimate
 
-    return Estimate(given.estimator, given.segments, given.window or "hann")
+    is_chosen = bool(given.segments or given.window or given.estimator != Estimate.estimator)
+    return Estimate(given.estimator, given.segments, given.window or "hann", is_chosen)
 
 
 def _read(given: FitOptions) -> list[MeasuredResponse]:

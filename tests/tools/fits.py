@@ -3,10 +3,11 @@
     python -m tests.tools.fits lines 500
     python -m tests.tools.fits lines 500 1 wild
     python -m tests.tools.fits kinds 200 exact
+    python -m tests.tools.fits records 40 hum
 
 The first fits so many simulated frequency responses (tests/unit/data/laboratory.py), the second those with
 modes outside the band, wild lines and real poles, the third data of every kind, or of the kinds named
-(tests/unit/data/kinds.py).
+(tests/unit/data/kinds.py), the last records in time (tests/unit/data/records.py).
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import time
 
 import numpy as np
 
-from tests.unit.data import kinds
+from tests.unit.data import kinds, records
 from tests.unit.data.laboratory import limit_for, simulated, study, summary, wild
 
 
@@ -43,15 +44,16 @@ def lines(arguments):
             print(f"  {name}: {value}")
 
 
-def every_kind(arguments):
+def every_kind(arguments, of=kinds):
     """Print the statistics of fits to data of every kind."""
     count = int(arguments[0])
-    for kind in arguments[1:] or kinds.KINDS:
+    for kind in arguments[1:] or of.KINDS:
         begun = time.process_time()
-        off, wrong, phantoms = kinds.study(kind, count, show=print)
+        off, wrong, silent = of.study(kind, count, show=print)
         rms, seconds = np.sqrt(np.mean(off**2)), (time.process_time() - begun) / count
-        print(f"{kind}: rms {rms:.2f}, wrong {wrong}, phantoms {phantoms}, {seconds:.1f} s each", flush=True)
+        print(f"{kind}: rms {rms:.2f}, wrong {wrong}, unsaid {silent}, {seconds:.1f} s each", flush=True)
 
 
 if __name__ == "__main__":
-    {"lines": lines, "kinds": every_kind}[sys.argv[1]](sys.argv[2:])
+    studies = {"lines": lines, "kinds": every_kind, "records": lambda given: every_kind(given, records)}
+    studies[sys.argv[1]](sys.argv[2:])

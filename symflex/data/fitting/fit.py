@@ -11,8 +11,9 @@ import numpy as np
 
 from symflex.data.fitting.least_squares import FLAT, Refined, widened
 from symflex.data.fitting.lines import isolated, single_lines, step_line, wild_lines
-from symflex.data.fitting.minimum_phase import PhaseTest, judge_phase, not_judged
+from symflex.data.fitting.minimum_phase import PhaseTest, judge_phase, judge_zeros, not_judged
 from symflex.data.fitting.noise import rounding, with_noise, with_rough_noise
+from symflex.data.fitting.numerator import Residues
 from symflex.data.fitting.observation import FittedLines
 from symflex.data.fitting.order import (
     CRITERIA,
@@ -31,9 +32,12 @@ from symflex.data.fitting.order import (
     refitted,
     with_own_noise,
 )
-from symflex.data.fitting.problem import FitProblem, fit_problem
+from symflex.data.fitting.output_error import OutputError
+from symflex.data.fitting.problem import EXACT, FitProblem, fit_problem
+from symflex.data.fitting.record_search import RecordSearch, RecordTerms, Settings, described
 from symflex.data.fitting.resonances import (
     LOGARITHMIC,
+    NO_PEAK,
     UNITS,
     Complex,
     Free,
@@ -106,6 +110,7 @@ class ResonanceFit:
     # Why the result is poor, so that standard errors do not tell how far off it may be; empty where it is
     # not.
     poor: tuple[str, ...] = ()
+    record: RecordTerms | None = None  # what else a fit in time found
 
     def __repr__(self) -> str:
         return f"<ResonanceFit: {self.modes.sum()} resonances of {len(self.bases)} responses>"
@@ -133,6 +138,8 @@ class ResonanceFit:
     @property
     def leaves_rounding(self) -> bool:
         """Whether the fit leaves no more than the rounding of numbers of six digits or more."""
+        if self.record is not None:
+            return max(self.record.residual_share) < EXACT
         return self.problem.is_exact and self.refined.reduced < FAR_OFF
 
     def left_out(self, response: int) -> Whole:
@@ -235,6 +242,8 @@ def fit_resonances(
             raise no_such(what, name, allowed, "choose from")
     if bases is not None and given.slope is not None:
         raise refused("a power of s is for fits without a base")
+    if bases is None and _are_in_time(measured, given):
+        return _fit_in_time(measured, given)
     for response in measured:
         needed = max(FEWEST_LINES, 4 * (given.modes or 1) + 2)
         if response.values.size < needed:
@@ -307,6 +316,62 @@ def _fit(
             for test in tests
         )
     return replace(fit, phase_tests=tests, warnings=(*doubts, *_warnings(fit)), poor=reasons)
+
+
+def _are_in_time(measured: Sequence[MeasuredResponse], given: FitOptions) -> bool:
+    """Tell whether all responses are of records that can be fitted in time, and nothing else is asked for."""
+    is_lag_free = given.is_lag_free or given.is_lag_signed
+    are_driven = {one.input is not None for response in measured for one in response.samples}
+    return (
+        all(one.samples for one in measured)
+        and len(are_driven) == 1
+        and not is_lag_free
+        and given.start == "auto"
+    )
+
+
+def _fit_in_time(measured: Sequence[MeasuredResponse], given: FitOptions) -> ResonanceFit:
+    settings = Settings(
+        given.hold, given.criterion, given.modes, given.slope, given.is_delay_free, given.band
+    )
+    search = RecordSearch([one.samples for one in measured], settings)
+    stages = Stages()
+    problem, dynamics = stages.within(LAST_SHARE, search.found, search.best)
+    residues = Residues(problem, dynamics, given.slope)
+    free = Free(gain=True, delay=dynamics.is_delay_free)
+    resonances, covariance = residues.packed(free)
+    bases = tuple(Base.power(int(power)) for power in resonances.slope)
+    of_lines = fit_problem(measured, [base.function for base in bases], free, has_base=False)
+    low = 2 * np.pi / problem.length_s
+    reach = (low / 2, np.pi / problem.step_s)
+    if given.band is not None:
+        reach = (2 * np.pi * given.band[0], 2 * np.pi * given.band[1])
+    of_lines = replace(of_lines, reach=reach)
+    solved = problem.solve(dynamics)
+    residuals = tuple(one.residual for one in solved)
+    parameters = sum(problem.linear_terms(dynamics, r) for r in range(len(solved))) + dynamics.order
+    refined = Refined(resonances, True, residuals, covariance, 1.0, parameters)
+    candidate = Candidate(resonances.order, "subspace", resonances, refined, None)
+    scores = tuple(_score_in_time(problem, search, order) for order in sorted(search.tried))
+    record = described(problem, dynamics, residues.all_errors, [one.samples[0] for one in measured])
+    fit = ResonanceFit(of_lines, bases, candidate, scores, given.criterion, (), (), record=record)
+    errors = fit.standard_errors()
+    tests = tuple(judge_zeros(resonances.one(r), errors.one(r)) for r in range(len(bases)))
+    fit = replace(fit, phase_tests=tests, warnings=(*record.warnings, *_warnings(fit)))
+    reasons = ["the time budget ended before the fit was complete"] if stages.is_cut else []
+    return replace(fit, poor=(*reasons, *record.poor, *_poor(fit)))
+
+
+def _score_in_time(problem: OutputError, search: RecordSearch, order: int) -> Score:
+    dynamics = search.tried[order].dynamics
+    costs = [one.cost for one in problem.solve(dynamics)]
+    parameters = sum(problem.linear_terms(dynamics, r) for r in range(len(costs))) + dynamics.order
+    size = sum(problem.sizes)
+    freedom = max(size - parameters - 1, 1)
+    fit = sum(n * np.log(max(cost, 1e-300) / n) for n, cost in zip(problem.sizes, costs, strict=True))
+    aicc = fit + 2 * parameters * size / freedom
+    count = int(np.sum(dynamics.zeta < NO_PEAK))
+    return Score(order, count, parameters, search.tried[order].score, aicc, sum(costs) / freedom, "usable")
 
 
 def _without_false_coherence(problem: FitProblem, most: int) -> tuple[FitProblem, list[str]]:
@@ -395,6 +460,8 @@ def _poor(fit: ResonanceFit) -> tuple[str, ...]:
     if fit.leaves_rounding:
         return tuple(lost)  # what is left tells nothing
     reasons = []
+    if fit.record is not None:
+        return (*lost, *_gain_lost(fit))
     if lack_of_fit(fit.problem, fit.refined) < UNLIKELY:
         reasons.append("a function with more poles describes the data far better than noise explains")
     if fit.problem.is_noise_known and fit.refined.reduced > LARGE:
@@ -405,18 +472,27 @@ def _poor(fit: ResonanceFit) -> tuple[str, ...]:
         reasons.append("another power of s fits the data equally well, with another gain and other zeros")
     if fit.refined.correlation > SMOOTH:
         reasons.append("neighbouring lines deviate together: the model lacks something")
-    reasons += lost
-    if fit.problem.free.gain and not np.all(errors.gain <= WEAK * np.abs(modes.gain)):
-        is_beyond = (modes.omega_z > fit.problem.band[1]) & (modes.zeta_z < 0)
-        is_lag = not fit.problem.free.delay and bool(np.any(modes.real_z < 0) or np.any(is_beyond))
-        advice = ": zeros in the right half-plane above the band may be a delay, try --delay"
-        reasons.append("the gain is less than twice its standard error" + advice * is_lag)
+    reasons += [*lost, *_gain_lost(fit)]
     for r, line in enumerate(fit.problem.lines):
         if reasons and (k := step_line(line.omega, line.measured.values)) is not None:
             low, high = line.measured.frequency_hz[k : k + 2]
             where = f"{fit.of_response(r)} between {low:.6g} and {high:.6g} Hz"
             reasons.append(f"the magnitude steps{where}, as where an analyser changes its range")
     return tuple(reasons)
+
+
+def _gain_lost(fit: ResonanceFit) -> list[str]:
+    modes, errors, reasons = fit.resonances, fit.standard_errors(), []
+    if fit.problem.free.gain and not np.all(errors.gain <= WEAK * np.abs(modes.gain)):
+        is_beyond = (modes.omega_z > fit.problem.band[1]) & (modes.zeta_z < 0)
+        is_lag = (
+            fit.record is None
+            and not fit.problem.free.delay
+            and bool(np.any(modes.real_z < 0) or np.any(is_beyond))
+        )
+        advice = ": zeros in the right half-plane above the band may be a delay, try --delay"
+        reasons.append("the gain is less than twice its standard error" + advice * is_lag)
+    return reasons
 
 
 def _is_rounded(fit: ResonanceFit) -> bool:
@@ -509,6 +585,8 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
                 warnings.append(
                     f"{pair} lies outside the band measured, at {at_hz:.4g} Hz: the data show only its effect"
                 )
+    if fit.record is not None:
+        return tuple(warnings)
     for line in fit.problem.lines:
         spacing = line.measured.spacing_hz
         if spacing is None or line.measured.window:

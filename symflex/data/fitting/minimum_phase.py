@@ -42,6 +42,7 @@ SHORTEST_RUN, LONGEST_GAP = 4, 10  # fewest lines of a band where phases part; m
 LOWEST_DAMPING = 1e-4  # of mirrored zeros, whose logarithms are searched for
 MOST_LAG: Final = np.pi / 2  # a lag at the highest line that poles above the band, or a sensor, may cause
 WORSE: Final = 1.25  # a magnitude misfit up to this times the least one counts as a fit as well
+TINY: Final = 1e-300  # keeps a quotient by an error of zero finite
 POOR: Final = 2.0  # magnitude misfit, over the noise and :data:`CAP`, from which resonances describe nothing
 
 
@@ -111,6 +112,20 @@ def judge_phase(problem: FitProblem, response: int, fitted: Resonances) -> Phase
                 return PhaseTest(alone, difference, bands, magnitude_db, verdict, other, lag)
     verdict = "undetermined" if misfit > POOR else "nonminimum"
     return PhaseTest(alone, difference, bands, magnitude_db, verdict)
+
+
+def judge_zeros(modes: Resonances, errors: Resonances) -> PhaseTest:
+    """Return what the zeros of a fit in time say: their sides, where their errors leave no doubt."""
+    shown = modes.has_zeros[0]
+    damping = np.where(modes.omega_z[0] < 0, -np.inf, modes.zeta_z[0] / np.maximum(errors.zeta_z[0], TINY))[
+        shown
+    ]
+    real = modes.real_z[np.isfinite(modes.real_z)]
+    worst = float(np.min([np.inf, *damping, *np.where(real < 0, -np.inf, np.inf)]))
+    verdict: Verdict = "undetermined"
+    if abs(worst) > 2:  # noqa: PLR2004 (standard errors)
+        verdict = "minimum" if worst > 0 else "nonminimum"
+    return PhaseTest(modes, np.zeros(0), (), 0.0, verdict)
 
 
 def not_judged(problem: FitProblem, response: int, fitted: Resonances) -> PhaseTest:

@@ -14,8 +14,9 @@ import numpy as np
 import numpy.typing as npt
 
 from symflex.data.fitting.least_squares import triangle
+from symflex.data.fitting.output_error import LEAST_DAMPING, OutputError, PoleSet
 from symflex.data.fitting.problem import FitProblem
-from symflex.data.fitting.resonances import Complex, Real, Resonances
+from symflex.data.fitting.resonances import Complex, Free, Real, Resonances
 from symflex.data.fitting.starts import REAL, solved_real
 
 TURNS, PER_TURN = 2.5, 8  # delays tried on either side of that of the poles, in turns at the highest line
@@ -24,6 +25,11 @@ MOST_POLISHED = 12
 POLISHED = 4
 STRANGE, MOST_DAMPED = 10.0, 2.0  # BIC to gain by a pair of zeros that is hardly one; its least damping ratio
 FAR_OUTSIDE = 30.0  # frequency over the end of the band beyond which a pole bends nothing that a gain cannot
+
+
+MOST_ZETA = 1 - 1e-9  # damping ratio of a pair that is no two real poles
+LOST = 10.0  # standard error, over its value, of a parameter that a record does not determine
+STEP = 0.01  # of standard errors, by which parameters move for derivatives
 
 
 @dataclass(frozen=True, eq=False)
@@ -201,3 +207,193 @@ def _pairs(coefficients: Real, middle: float, count: int) -> tuple[Real, Real, f
         return None
     omega = np.array([*(p[0] for p in pairs), *[np.inf] * missing], np.float64)
     return omega, np.array([*(p[1] for p in pairs), *[0.0] * missing], np.float64), single
+
+
+class Residues:
+    """Residues over poles, fitted to records in time, as numerators; coefficients that may be zero are."""
+
+    # A numerator has every power of s below the order. Those at its ends that the data do not tell from zero
+    # are set to zero one by one, and all other parameters move as their covariance says (Wald, Trans. Am.
+    # Math. Soc. 54, 1943): to first order the result is the fit with fewer zeros, or another power of s.
+
+    def __init__(self, problem: OutputError, dynamics: PoleSet, slope: int | None) -> None:
+        covariance, solved, self.reduced = problem.covariance(dynamics)
+        packed = dynamics.pack(problem.step_s, problem.length_s)
+        self.dynamics, self.step_s = dynamics, problem.step_s
+        first = problem.outputs[0][0]
+        # A free decay is the response to an impulse at its first sample.
+        self.decay_s = first.size * first.step_s if first.input is None else None
+        poles = 2 * dynamics.omega.size + dynamics.real.size
+        self.poles = poles
+        plant = dynamics.order + dynamics.has_direct
+        places = [*range(poles), *([packed.size - 1] if dynamics.is_delay_free else [])]
+        values = [packed[places]]
+        at = packed.size
+        for one in solved:
+            places += range(at, at + plant)
+            values.append(one.coefficients[:plant])
+            at += one.coefficients.size
+        self.values = np.concatenate(values)
+        self.covariance = covariance[np.ix_(places, places)]
+        lost = np.flatnonzero(~np.isfinite(np.diag(self.covariance)))
+        self.is_determined = not lost.size
+        self.covariance[lost, lost] = (LOST * (np.abs(self.values[lost]) + 1)) ** 2
+        self.all_errors = np.sqrt(np.diag(covariance))
+        self.middle = float(
+            np.exp(np.mean(np.log([*dynamics.omega, *dynamics.real, 2 * np.pi / problem.length_s])))
+        )
+        if dynamics.omega.size + dynamics.real.size:
+            self.middle = float(np.exp(np.mean(np.log([*dynamics.omega, *dynamics.real]))))
+        prices = np.log(problem.sizes)
+        self.shapes = [self._shape(r, slope, price) for r, price in enumerate(prices)]
+        if dynamics.is_delay_free and self.values[poles] ** 2 <= prices[0] * self.covariance[poles, poles]:
+            self._moved(self.values[poles], np.arange(self.values.size) == poles)
+            self.values[poles] = 0.0
+
+    def numerator(self, values: Real, response: int) -> Real:
+        """Return the coefficients of powers of s over :attr:`middle`, from 0 on."""
+        n, m, zeros = self.dynamics.omega.size, self.dynamics.real.size, self.dynamics.integrators
+        omega, zeta = np.exp(values[:n]) / self.middle, np.clip(values[n : 2 * n], -MOST_ZETA, MOST_ZETA)
+        corners = np.exp(values[2 * n : 2 * n + m]) / self.middle
+        below = [np.array([w * w, 2 * z * w, 1.0]) for w, z in zip(omega, zeta, strict=True)]
+        below += [np.array([c, 1.0]) for c in corners] + [np.array([0.0, 1.0])] * zeros
+        plant = 2 * n + m + zeros + self.dynamics.has_direct
+        first = self.poles + self.dynamics.is_delay_free + response * plant
+        residues = values[first : first + plant] / self.middle
+        if self.decay_s is not None:
+            residues = residues.copy()
+            upper = self.middle * omega * (-zeta + 1j * np.sqrt(1 - zeta**2))
+            of_pairs = (residues[: 2 * n].reshape(n, 2) @ [1, 1j]) / (1 - np.exp(upper * self.decay_s))
+            residues[: 2 * n] = np.stack((of_pairs.real, of_pairs.imag), axis=1).ravel()
+            residues[2 * n : 2 * n + m] /= 1 - np.exp(-corners * self.middle * self.decay_s)
+        above = [
+            np.array([2 * (a * z * w - b * w * np.sqrt(1 - z * z)), 2 * a])
+            for (a, b), w, z in zip(residues[: 2 * n].reshape(n, 2), omega, zeta, strict=True)
+        ]
+        above += [np.array([c]) for c in residues[2 * n : 2 * n + m]]
+        above += [np.array([residues[2 * n + m + k] / self.middle**k]) for k in range(zeros)]
+        total = np.zeros(2 * n + m + zeros + 1)
+        for i, own in enumerate(above):
+            # The second pole at zero is over s^2, all others over their own factor.
+            others = [one for k, one in enumerate(below) if k != i]
+            if i == n + m + 1:
+                others = below[: n + m]
+            elif i == n + m and zeros > 1:
+                others = [*below[: n + m], np.array([0.0, 1.0])]
+            product = own
+            for one in others:
+                product = np.convolve(product, one)
+            total[: product.size] += product
+        if self.dynamics.has_direct:
+            product = np.array([residues[-1] * self.middle])
+            for one in below:
+                product = np.convolve(product, one)
+            total += product
+        return total
+
+    def _shape(self, response: int, slope: int | None, price: float) -> tuple[int, int]:
+        """Return the lowest and the highest power of s, and move the parameters to where others are zero."""
+        zeros = self.dynamics.integrators
+        low, high = 0, self.dynamics.order - (not self.dynamics.has_direct)
+        most = 2 * (self.dynamics.omega.size + self.dynamics.real.size // 2) + 1
+        while slope is not None and low < min(slope + zeros, high):
+            self._conditioned(response, low)
+            low += 1
+        while high > low and (high - low > most or self._is_nothing(response, high, price)):
+            self._conditioned(response, high)
+            high -= 1
+        while slope is None and low < high and self._is_nothing(response, low, price):
+            self._conditioned(response, low)
+            low += 1
+        return low, high
+
+    def _slope(self, response: int, power: int) -> tuple[float, Real]:
+        value = self.numerator(self.values, response)[power]
+        errors = np.sqrt(np.maximum(np.diag(self.covariance), 0))
+        steps = STEP * np.where(errors > 0, np.minimum(errors, np.abs(self.values) + 1), 1e-9)
+        slopes = np.zeros(self.values.size)
+        for i, step in enumerate(steps):
+            moved = [self.values.copy() for _ in range(2)]
+            moved[0][i] += step
+            moved[1][i] -= step
+            up, down = (self.numerator(one, response)[power] for one in moved)
+            slopes[i] = (up - down) / (2 * step)
+        return float(value), slopes
+
+    def _is_nothing(self, response: int, power: int, price: float) -> bool:
+        value, slopes = self._slope(response, power)
+        variance = float(slopes @ self.covariance @ slopes)
+        return bool(value**2 <= price * variance) or not np.isfinite(variance)
+
+    def _conditioned(self, response: int, power: int) -> None:
+        self._moved(*self._slope(response, power))
+
+    def _moved(self, value: float, slopes: Real) -> None:
+        """Move the parameters to where a value with these derivatives is zero."""
+        turned = self.covariance @ slopes
+        variance = float(slopes @ turned)
+        if not (np.isfinite(variance) and variance > 0):
+            return
+        moved = self.values - turned * value / variance
+        n = self.dynamics.omega.size
+        if np.all((moved[n : 2 * n] > 0) & (moved[n : 2 * n] < 1)):
+            self.values = moved
+            self.covariance = self.covariance - np.outer(turned, turned) / variance
+
+    def resonances(self, values: Real | None = None) -> Resonances | None:
+        """Return poles, zeros and gains; None where zeros are more than poles have room for."""
+        values = self.values if values is None else values
+        n, m, zeros = self.dynamics.omega.size, self.dynamics.real.size, self.dynamics.integrators
+        omega, zeta = np.exp(values[:n]), np.maximum(values[n : 2 * n], LEAST_DAMPING)
+        corners = np.sort(np.exp(values[2 * n : 2 * n + m]))
+        first, second = corners[: m // 2 * 2 : 2], corners[1::2]
+        centre = np.sqrt(first * second)
+        made = []
+        for r, (low, high) in enumerate(self.shapes):
+            above = self.numerator(values, r)[low : high + 1]
+            found = _pairs(above, self.middle, n + m // 2)
+            if found is None:
+                return None
+            constant = np.prod((omega / self.middle) ** 2) * np.prod(corners / self.middle)
+            slope = low - zeros
+            made.append((*found, above[0] / constant / self.middle**slope, slope))
+        omega_z, zeta_z, real_z, gain, slopes = (np.array(one) for one in zip(*made, strict=True))
+        delay = values[self.poles] * self.step_s if self.dynamics.is_delay_free else 0.0
+        return Resonances(
+            np.append(omega, centre),
+            np.append(zeta, (first + second) / (2 * centre)),
+            omega_z,
+            zeta_z,
+            gain.astype(np.float64),
+            delay=np.full(len(made), delay),
+            slope=slopes.astype(np.int64),
+            real_p=corners[m // 2 * 2 :],
+            real_z=real_z.astype(np.float64),
+        ).ordered()
+
+    def packed(self, free: Free) -> tuple[Resonances, Real]:
+        """Return the result and the covariance of its packed parameters, to first order."""
+        best = self.resonances()
+        assert best is not None
+        values, vectors = np.linalg.eigh(self.covariance)
+        packed = best.pack(free)
+        columns = []
+        for value, vector in zip(values, vectors.T, strict=True):
+            way = np.sqrt(max(value, 0.0)) * vector
+            step = STEP / max(1.0, float(np.max(np.abs(way[: self.poles]), initial=0.0)))
+            ends = [self.resonances(self.values + sign * step * way) for sign in (1, -1)]
+            up, down = (packed if one is None else one.pack(free) for one in ends)
+            if up.size == down.size == packed.size:
+                columns.append((up - down) / (2 * step))
+            else:
+                columns.append(np.where(np.arange(packed.size) < best.shared(), 0.0, np.inf))
+        slopes = np.array(columns).T.reshape(packed.size, -1)
+        is_lost = ~np.isfinite(slopes).all(axis=1)
+        slopes[is_lost] = 0
+        covariance = slopes @ slopes.T
+        covariance[is_lost, is_lost] = np.inf
+        if not self.is_determined:
+            covariance[np.diag_indices(packed.size)] += np.where(
+                np.arange(packed.size) >= best.shared(), np.inf, 0
+            )
+        return best, covariance

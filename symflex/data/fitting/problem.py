@@ -28,6 +28,8 @@ class FitProblem:
     delays: tuple[float, ...] = ()  # delay of each response that a start begins with [s]
     # Whether the accuracy of lines was estimated, and not known from coherence.
     is_noise_estimated: bool = False
+    # The band that records in time show [rad/s], where these were fitted, and the lines are to look at.
+    reach: tuple[float, float] | None = None
     # Of the estimate: how well a function without structure describes the lines.
     reference: StructurelessFit | None = None
     count: int = field(init=False)  # lines
@@ -63,6 +65,8 @@ class FitProblem:
     @property
     def band(self) -> tuple[float, float]:
         """The lowest and the highest frequency measured [rad/s]."""
+        if self.reach is not None:
+            return self.reach
         return min(float(x.omega[0]) for x in self.lines), max(float(x.omega[-1]) for x in self.lines)
 
     def rephased(self, values: Sequence[Complex]) -> FitProblem:

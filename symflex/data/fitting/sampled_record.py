@@ -11,6 +11,7 @@ what the record begins with less what it ends with (Pintelon &
 Schoukens, System Identification, 2nd ed. 2012, section 6.3). By Parseval's theorem, least squares on these
 lines are those of the output's error in time. Noise of any colour weighs lines, and a band is some of them.
 
+    smooth             H = 1/(j omega - p): an input without frequencies above half the sampling rate
     held, no delay     g = (0, (E - 1)/p, E (E - 1)/p): H = (E - 1)/p/(z - E)
     a steady sine      c/(1 - exp(j omega_0 h)/z), no input
     offset, drift      the line at 0 Hz, which is left out; 1/(1 - 1/z)
@@ -31,8 +32,10 @@ from symflex.data.measurement.measured_response import Samples
 SMALL: Final = 0.5  # size of an argument below which a series has more digits than its closed form
 TERMS: Final = 18  # of that series: 0.5^18/21! is far below rounding
 FORGOTTEN: Final = 37.0  # exp(-37) is the rounding of 1
+ON_LINE: Final = 1e-12  # distance of a pole from a line, below which this one stands for it
 MOST_REGRESSORS: Final = 30  # of a disturbance whose colour is estimated
 SAMPLES_EACH: Final = 12  # samples that each of these takes at least
+FEW_LEVELS: Final = 3  # of a step or a square wave, whose input is held
 HELD: Final = 0.5  # share of samples equal to those before them from which an input is held
 
 
@@ -46,14 +49,25 @@ class SampledRecord:
     input: Real | None
     lead: int = 0
     is_joined: bool = False  # whether lines join the samples of the input; else each is held to the next
+    is_smooth: bool = False  # whether it has no frequency above half the sampling rate, instead of both
     is_at_rest: bool = False  # whether nothing moved before the first sample, and the input was as there
     lines: Mask | None = None  # which of the lines above 0 Hz and below half the sampling rate; None for all
     noise: Real | None = None  # shape (lines,): standard deviation of a line; None for 1
     measured: Mask | None = None  # which samples of the output there are; the others hold a guess
+    # shape (2 lines, g): an orthonormal basis of what errors of the input add, weighted, at samples that were
+    # lost; None to trust guesses.
+    lost: Real | None = None
     _inputs: dict[int, Complex] = field(default_factory=dict, repr=False)
 
     @staticmethod
-    def of(samples: Samples, *, is_joined: bool, is_at_rest: bool = False, lead: int = 0) -> SampledRecord:
+    def of(
+        samples: Samples,
+        *,
+        is_joined: bool,
+        is_at_rest: bool = False,
+        lead: int = 0,
+        is_smooth: bool = False,
+    ) -> SampledRecord:
         """Return the record of samples; without rest, the input must lead by the delay in whole samples."""
         y, u = samples.output, samples.input
         measured = None if samples.is_missing is None else ~samples.is_missing
@@ -61,7 +75,7 @@ class SampledRecord:
             u = np.concatenate((np.full(lead, u[0]), u)) - u[0]
         elif lead:
             y, measured = y[lead:], None if measured is None else measured[lead:]
-        return SampledRecord(samples.step_s, y, u, lead, is_joined, is_at_rest, measured=measured)
+        return SampledRecord(samples.step_s, y, u, lead, is_joined, is_smooth, is_at_rest, measured=measured)
 
     @property
     def size(self) -> int:
@@ -101,6 +115,10 @@ class SampledRecord:
             self._inputs[delay] = self.spectrum(self._delayed(delay))
         return self._inputs[delay]
 
+    def input_mean(self, delay: int = 0) -> Complex:
+        """Return the line at 0 Hz of the input, delayed by whole samples."""
+        return np.array([np.sum(self._delayed(delay)) / np.sqrt(self.size)], np.complex128)
+
     def _delayed(self, delay: int) -> Real:
         assert self.input is not None
         first = max(self.lead - delay, 0)
@@ -108,9 +126,11 @@ class SampledRecord:
 
     def weighted(self, spectrum: Complex) -> Real:
         """Return real numbers of variance 1, if the noise is right: shape (k, ...) to (2 k, ...)."""
+        # They are without what an input that was lost may have added.
         noise = 1.0 if self.noise is None else self.noise.reshape(-1, *[1] * (spectrum.ndim - 1))
         scaled = np.sqrt(2) * spectrum / noise
-        return np.concatenate((scaled.real, scaled.imag))
+        values = np.concatenate((scaled.real, scaled.imag))
+        return values if self.lost is None else values - self.lost @ (self.lost.T @ values)
 
     def drift(self) -> Complex:
         """Return the spectrum of a straight line, up to a factor; its mean is not on the lines."""
@@ -120,17 +140,24 @@ class SampledRecord:
         """Return the spectrum of one sample, the first: it depends on an input that was not recorded."""
         return np.full(self.omega.size, 1 / np.sqrt(self.size), np.complex128)
 
-    def pole(self, p: complex, delay_s: float = 0.0) -> PoleSpectrum:
-        """Return what a pole ``1/(s - p)`` adds to the spectrum of the output, with derivatives."""
-        h, back, root = self.step_s, self.back, np.sqrt(self.size)
+    def pole(self, p: complex, delay_s: float = 0.0, *, is_mean: bool = False) -> PoleSpectrum:
+        """Return what a pole ``1/(s - p)`` adds to the spectrum of the output, or to its line at 0 Hz."""
+        h, root = self.step_s, np.sqrt(self.size)
+        back, omega = (np.ones(1, np.complex128), np.zeros(1)) if is_mean else (self.back, self.omega)
         E = np.exp(p * h)
-        free = 1 / (1 - E * back)
+        off = 1 - E * back
+        free = 1 / np.where(np.abs(off) < ON_LINE, ON_LINE, off)
         by_pole = h * E * back * free**2
         if self.input is None:
             return PoleSpectrum(None, None, None, free / root, by_pole / root)
+        if self.is_smooth:
+            s = 1j * omega
+            off = np.where(np.abs(s - p) * h < ON_LINE, ON_LINE / h, s - p)
+            driven = np.exp(-s * delay_s) * (self.input_mean() if is_mean else self.input_lines()) / off
+            return PoleSpectrum(driven, driven / off, -s * driven, free / root, by_pole / root)
         whole, fraction = divmod(delay_s / h, 1)
         g, g_by_pole, g_by_delay = _weights(p, h, fraction, is_joined=self.is_joined)
-        u = self.input_lines(int(whole))
+        u = self.input_mean(int(whole)) if is_mean else self.input_lines(int(whole))
         tail = back**2 * free
         driven = (g[0] + g[1] * back + g[2] * tail) * u
         driven_by_pole = (
@@ -169,12 +196,31 @@ class SampledRecord:
 
     def direct(self, delay_s: float = 0.0) -> tuple[Complex, Complex]:
         """Return the spectrum of the delayed input itself as the output samples it, and by the delay."""
+        if self.is_smooth:
+            u = np.exp(-1j * self.omega * delay_s) * self.input_lines()
+            return u, -1j * self.omega * u
         whole, fraction = divmod(delay_s / self.step_s, 1)
         u = self.input_lines(int(whole))
         if self.is_joined:
             step = (self.back - 1) * u
             return u + fraction * step, step / self.step_s
         return (self.back * u if fraction else u), np.zeros_like(u)
+
+    def at(self, lines: Mask) -> SampledRecord:
+        """Return the record with some of its lines."""
+        if lines.all():
+            return self
+        every = np.zeros((self.size - 1) // 2, bool)
+        every[np.flatnonzero(np.ones_like(every) if self.lines is None else self.lines)[lines]] = True
+        noise = None if self.noise is None else self.noise[lines]
+        return replace(self, lines=every, noise=noise, _inputs={})
+
+    def struck(self) -> SampledRecord:
+        """Return the record of a unit input at the first sample alone."""
+        assert self.input is not None
+        pulse = np.zeros(self.input.size)
+        pulse[self.lead] = 1.0
+        return replace(self, input=pulse, is_at_rest=False, _inputs={})
 
     def with_noise(self, residual: Complex) -> SampledRecord:
         """Return the record with the noise that a residual shows: autoregressive, or white in a band."""
@@ -206,8 +252,12 @@ class PoleSpectrum:
 
 
 def is_held(values: Real) -> bool:
-    """Return whether an input shows that it is held between samples: it often stays as it was."""
-    return bool(np.mean(np.diff(values) == 0) > HELD)
+    """Return whether an input shows that it is held between samples: where it acts, it often stays."""
+    if np.unique(values).size <= FEW_LEVELS:
+        return True
+    is_at_rest = values == np.median(values)
+    acts = ~(is_at_rest[1:] & is_at_rest[:-1])
+    return bool(np.mean(np.diff(values)[acts] == 0) > HELD)
 
 
 def autoregression(values: Real, most: int = MOST_REGRESSORS) -> tuple[Real, float]:

@@ -12,10 +12,12 @@ import numpy as np
 
 from symflex.data.fitting import FittedModeShapes, ParameterFit, PhaseTest, ResonanceFit
 from symflex.data.fitting.identifiable import Identifiability
+from symflex.data.fitting.record_search import RecordTerms
 from symflex.errors import counted
 from symflex.model import ModelParameter
 from symflex.print.text import INDENT, Passage
 
+HOLDS: Final = {"held": "held", "joined": "joined by lines", "smooth": "smooth"}
 SCHEMA: Final = "symflex.fit/1"
 PARAMETERS_SCHEMA: Final = "symflex.fit_parameters/1"
 ERROR_DIGITS: Final = 2
@@ -24,6 +26,7 @@ STARTS: Final = {
     "peaks": "peaks and troughs of the magnitude, the paper's procedure",
     "vector": "vector fitting",
     "aaa": "AAA approximation",
+    "subspace": "a subspace method, in time",
     "none": "nothing but a gain",
 }
 
@@ -49,13 +52,18 @@ def fit_passages(fit: ResonanceFit, shapes: FittedModeShapes | None) -> Iterator
         yield _zeros(fit, r)
     if shapes is not None:
         yield _shapes(shapes)
-    misfits = [(fit.misfit_db(r), fit.misfit_degrees(r)) for r in range(modes.responses)]
+    if fit.record is not None:
+        yield Passage([INDENT + line for line in _record_lines(fit, fit.record)])
+    misfits = (
+        [] if fit.record else [(fit.misfit_db(r), fit.misfit_degrees(r)) for r in range(modes.responses)]
+    )
     residuals = [
         f"{INDENT}residual{fit.of_response(r)}: {level:.2g} dB"
         f"{'' if fit.measured[r].is_magnitude else f' and {turn:.2g} degrees'} rms"
         for r, (level, turn) in enumerate(misfits)
     ]
-    yield Passage([*residuals, INDENT + _accuracy(fit)])
+    if not fit.record:
+        yield Passage([*residuals, INDENT + _accuracy(fit)])
     if fit.scores:
         yield _orders(fit)
     words = enumerate(_phase_words(test, fit, r) for r, test in enumerate(fit.phase_tests))
@@ -231,6 +239,49 @@ def parameters_json(fit: ParameterFit) -> dict[str, object]:
     }
 
 
+def _record_lines(fit: ResonanceFit, record: RecordTerms) -> Iterator[str]:
+    """Yield what a fit in time found besides poles and zeros, and what it leaves."""
+    for r, (offset, rest, share) in enumerate(
+        zip(record.offsets, record.residual, record.residual_share, strict=True)
+    ):
+        whose = fit.of_response(r)
+        drift = f", drift {record.drifts[r]:.3g} per second" if record.drifts else ""
+        if offset is not None:
+            yield f"offset{whose} {offset:.4g}{drift}"
+        yield from (
+            f"steady sine{whose}: {_shown(one.frequency_hz, one.error_hz)} Hz, standard error "
+            f"{_error(one.error_hz)} Hz, amplitude {one.amplitudes[r]:.3g}"
+            + f" ({one.name})"
+            * bool(one.name)
+            for one in record.sines
+        )
+        colour = ", coloured" if record.is_coloured[r] else ""
+        yield f"residual{whose}: {rest:.3g} rms, {100 * share:.2g} % of the output{colour}"
+    yield "standard errors are scaled to the residual"
+
+
+def _record_json(record: RecordTerms) -> dict[str, object]:
+    return {
+        "hold": record.hold if record.is_driven else None,
+        "from_rest": record.is_at_rest,
+        "samples": list(record.samples),
+        "step_s": record.step_s,
+        "offset": list(record.offsets),
+        "drift_per_s": None if record.drifts is None else list(record.drifts),
+        "sines": [
+            {
+                "frequency_hz": one.frequency_hz,
+                "standard_error_hz": _finite(one.error_hz),
+                "amplitude": [_finite(x) for x in one.amplitudes],
+                "mains": one.name or None,
+            }
+            for one in record.sines
+        ],
+        "residual_rms": list(record.residual),
+        "residual_share": list(record.residual_share),
+    }
+
+
 def _zeros(fit: ResonanceFit, r: int) -> Passage:
     """Return the zeros of a response, and what else of it is fitted."""
     modes, errors, free = fit.resonances, fit.standard_errors(), fit.problem.free
@@ -338,6 +389,7 @@ def fit_json(fit: ResonanceFit, shapes: FittedModeShapes | None = None) -> dict[
             | {"status": s.status}
             for s in fit.scores
         ],
+        "record": None if fit.record is None else _record_json(fit.record),
         "mode_shapes": None if shapes is None else _shapes_json(shapes),
         "warnings": list(fit.warnings),
     }
@@ -434,6 +486,12 @@ def _what(fit: ResonanceFit, r: int) -> str:
 
 def _data_line(fit: ResonanceFit, r: int) -> str:
     measured = fit.measured[r]
+    if (record := fit.record) is not None:
+        parts = [f"data: {record.samples[r]} samples of {record.step_s:.6g} s, fitted in time"]
+        if record.is_driven:
+            parts.append(f"the input is {HOLDS[record.hold]} between samples")
+            parts += ["from rest"] * record.is_at_rest
+        return ", ".join(parts)
     low, high = ends_of_band(measured.frequency_hz[0], measured.frequency_hz[-1])
     parts = [f"data: {measured.values.size} lines from {low} to {high} Hz"]
     if measured.coherence is None:
@@ -522,6 +580,11 @@ def _phase_words(test: PhaseTest, fit: ResonanceFit, r: int) -> str:
     base = " (the base with its own phase)" if fit.bases[r].path else ""
     if test.verdict == "assumed":
         return "magnitude only: minimum phase is assumed"
+    if fit.record is not None:
+        return {
+            "minimum": "minimum phase: no zero of the fit lies in the right half-plane",
+            "nonminimum": "not minimum phase: a zero of the fit lies in the right half-plane",
+        }.get(test.verdict, "undetermined: a zero lies on either side within its error")
     if not test.bands and not test.is_minimum_phase:
         return "undetermined: noise hides the phase" if test.magnitude_db else "there was no time for it"
     if not test.bands:

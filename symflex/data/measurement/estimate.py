@@ -29,7 +29,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from symflex.data.measurement.measured_response import MeasuredResponse, window_of
+from symflex.data.measurement.measured_response import FEWEST_LINES, MeasuredResponse, Samples, window_of
 from symflex.data.measurement.minimum_phase import minimum_phase
 from symflex.errors import DataError, Diagnostic, refused
 
@@ -56,6 +56,8 @@ SWEPT: Final = 0.4  # share of a line's power in one segment from which an input
 OF_STEP: Final = "a step"
 HELD: Final = 0.5  # share of samples equal to those before them from which an input is held between samples
 STOPPED: Final = 0.01  # share of a record in whose last level the input is switched off, which is left out
+PURE: Final = 1e-3  # share of an input's power beside its highest line, up to which it is one sine
+TRANSIENT: Final = 100.0  # power of a line over the median, which noise does not reach
 DIES_AWAY: Final = 0.3  # rms of the second half of a free decay over that of the first half, at most
 ENDS: Final = 0.05  # share of a record by whose samples its ends are judged
 
@@ -67,6 +69,9 @@ class Estimate:
     estimator: str = "h1"
     segments: int | None = None  # by default as the input asks
     window: str = "hann"  # or none, exponential, or exponential: and its time constant [s]
+    is_chosen: bool = (
+        False  # whether a fit is asked to be one to this estimate, and not to the record in time
+    )
 
     def __post_init__(self) -> None:
         if self.window not in ("none", "exponential") and not window_of(self.window):
@@ -154,10 +159,18 @@ def responses_of(record: TimeRecord, how: Estimate) -> tuple[MeasuredResponse, .
         else:
             source, u = record.input
             channel = _Channel(u, values, record.step_s)
+            if said := _one_frequency(channel):
+                raise DataError(
+                    Diagnostic("SF605", said, None, "a sweep, a step or noise has many frequencies")
+                )
             frequency, response, coherence, averages, window, said = _estimated(channel, how)
             called = f"{name}/{source}"
         is_finite = np.isfinite(response) & (response != 0) & (frequency > 0)
-        if is_finite.sum() < 3:  # noqa: PLR2004 (as every response)
+        if is_finite.sum() < FEWEST_LINES and record.input is not None:
+            frequency, response, said = _plain(channel)
+            coherence, averages, window = None, None, ""
+            is_finite = np.isfinite(response) & (response != 0)
+        if is_finite.sum() < FEWEST_LINES:
             message = f"the record of '{name[:40]}' makes no response: it contains too few frequencies"
             raise DataError(Diagnostic("SF605", message, None, "a sweep, a step or noise has them all"))
         shares = None if coherence is None else np.clip(np.asarray(coherence)[is_finite], 1e-6, 1.0)
@@ -167,9 +180,58 @@ def responses_of(record: TimeRecord, how: Estimate) -> tuple[MeasuredResponse, .
                 record.unit(name) if record.input else "", notes=(said,), guesses=(*record.guesses, said),
                 is_record=True, is_magnitude=is_driven,
                 cut_off_s=1 / frequency[1] if said.startswith(OF_STEP) and not window else None,
+                samples=() if is_driven or how.is_chosen else (_samples(record, values),),
             )
         )  # fmt: skip
     return tuple(made)
+
+
+def _plain(channel: _Channel) -> tuple[Real, Complex, str]:
+    """Return the quotient of spectra on all lines, of a record too short for anything else."""
+    with np.errstate(all="ignore"):
+        response = np.fft.rfft(np.diff(channel.y))[1:] / np.fft.rfft(np.diff(channel.u))[1:]
+    frequency = np.asarray(np.fft.rfftfreq(channel.y.size - 1, channel.step_s)[1:], np.float64)
+    return frequency, response, "a short record: spectrum of the output's increments over those of the input"
+
+
+def _one_frequency(channel: _Channel) -> str:
+    """Return what a steady sine says, whose transients are over; empty for any other input."""
+    u, y, n = channel.u, channel.y, channel.u.size
+    size = np.abs(np.fft.rfft((u - u.mean()) * np.hanning(n))) ** 2
+    top = int(np.argmax(size))
+    if top < 4 or size[max(top - 3, 0) : top + 4].sum() < (1 - PURE) * size.sum():  # noqa: PLR2004 (Hann)
+        return ""
+    t = channel.step_s * (np.arange(n) - n / 2)
+    omega = 2 * np.pi * top / (n * channel.step_s)
+    for _ in range(8):
+        cosine, sine, one = np.cos(omega * t), np.sin(omega * t), np.ones(n)
+        a, b, _ = np.linalg.lstsq(np.stack((cosine, sine, one), 1), u, rcond=None)[0]
+        slope = t * (b * cosine - a * sine)
+        omega += np.linalg.lstsq(np.stack((cosine, sine, one, slope), 1), u, rcond=None)[0][3]
+    columns = np.stack((np.cos(omega * t), np.sin(omega * t), np.ones(n), t), 1)
+    of_u, of_y = (np.linalg.lstsq(columns, x, rcond=None)[0] for x in (u, y))
+    rest = np.abs(np.fft.rfft((y - columns @ of_y) * np.hanning(n)))[3:] ** 2
+    if rest.max(initial=0.0) > TRANSIENT * np.median(rest) and rest.sum() > PURE * np.sum(y**2):
+        return ""
+    value = complex(of_y[0], -of_y[1]) / complex(of_u[0], -of_u[1])
+    phase = np.degrees(np.angle(value))
+    said = f"one frequency gives one value, {abs(value):.4g} at {phase:.4g} degrees"
+    return f"the input is a steady sine of {omega / (2 * np.pi):.6g} Hz: {said}"
+
+
+def _samples(record: TimeRecord, values: Real) -> Samples:
+    """Return what a fit in time uses: all samples, or a free decay from where it is largest."""
+    if record.input is not None:
+        return Samples(record.step_s, values, record.input[1], record.is_missing)
+    start = _largest(values)
+    missing = None if record.is_missing is None else record.is_missing[start:]
+    return Samples(record.step_s, values[start:], None, missing)
+
+
+def _largest(values: Real) -> int:
+    """Return where a free decay begins: at its largest amplitude, if that is in the first half."""
+    start = int(np.argmax(np.abs(values - np.median(values[-max(values.size // 10, 8) :]))))
+    return start if start < values.size / 2 else 0
 
 
 _Estimated = tuple[npt.NDArray[Any], Complex, Real | None, float | None, str, str]
@@ -358,7 +420,7 @@ def _by_segments(channel: _Channel, how: Estimate) -> _Estimated:
 def _decay(values: Real, step_s: float) -> tuple[npt.NDArray[Any], Complex, Real | None, str]:
     """Return the spectrum of a free response from its largest amplitude on."""
     centred = values - np.median(values[-max(values.size // 10, 8) :])
-    start = int(np.argmax(np.abs(centred))) if np.argmax(np.abs(centred)) < values.size / 2 else 0
+    start = _largest(values)
     kept = centred[start:].copy()
     kept[0] /= 2  # the trapezoidal rule at a jump
     frequency = np.fft.rfftfreq(kept.size, step_s)

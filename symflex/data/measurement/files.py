@@ -206,6 +206,7 @@ def _averaged(responses: Sequence[MeasuredResponse]) -> list[MeasuredResponse]:
                 averages=count if same[0].averages else None,
                 notes=(*same[0].notes, said),
                 guesses=(*same[0].guesses, said),
+                samples=tuple(record for one in same for record in one.samples),
             )
         )
     return averaged

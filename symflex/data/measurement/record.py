@@ -48,6 +48,7 @@ from symflex.data.measurement.universal_file import UNIVERSAL, signals_in
 from symflex.errors import DataError, Diagnostic, refused
 
 Real = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
 
 SEARCHED: Final = 300  # lines among which the names of columns and the first row are sought
 BEGIN: Final = 4  # samples by which it is judged where a record begins
@@ -122,6 +123,7 @@ class TimeRecord:
     input: tuple[str, Real] | None = None
     guesses: tuple[str, ...] = ()  # what the file does not say
     units: Mapping[str, str] = field(default_factory=dict)  # of channels, in SI, where the file gives them
+    is_missing: Mask | None = None  # which samples were lost, and are guesses
 
     def unit(self, output: str) -> str:
         """Return the unit of an output over the input, empty if the file does not give both."""
@@ -252,6 +254,7 @@ def _of_table(table: TextTable, first: int, stem: str, *, is_timed: bool) -> Tim
     named = _in_si(cells, _units_below(table, first, cells), columns, table.lines[:first])
     if names and np.isfinite(columns[at]).sum() == 1 and np.nansum(columns[at]) > 0:  # the sampling time
         names, step = [], float(np.nansum(columns[at])) * float(unit)
+    lost: Mask | None = None
     if names:
         times = _seconds(columns[at] * float(unit), guesses) + float(start)
         # Counters and magnitudes of vectors, which are no longer such where they are made even.
@@ -262,14 +265,15 @@ def _of_table(table: TextTable, first: int, stem: str, *, is_timed: bool) -> Tim
                 excluded.append(i)
                 guesses.append(f"'{cells[i][:30]}' is the magnitude of the others and is left out")
         channels = [c for i, c in enumerate(named.channels) if i not in excluded]
-        step, kept = _even(times, table, lines, guesses)
-        channels = [(c, _resampled(times, x, step) if kept else x) for c, x in channels]
+        step, lost = _even(times, table, lines, guesses)
+        channels = [(c, x if lost is None else _resampled(times, x, step)) for c, x in channels]
     else:
         assert step is not None
         guesses.append(f"the samples are {step:.6g} s apart, as the file states")
         channels = named.channels
     option = "t,u,y" if names else f"u,y,dt={step:.6g}"
-    return _with_units(_sorted(channels, step, stem, table.source.name, guesses, option), named)
+    record = _sorted(channels, step, stem, table.source.name, guesses, option)
+    return _with_units(replace(record, is_missing=_missing(lost, record)), named)
 
 
 def _without_clock(data: bytes) -> bytes:
@@ -495,8 +499,8 @@ def _too_short(samples: int) -> DataError:
 
 def _even(
     times: Real, table: TextTable | None, lines: Sequence[int], guesses: list[str]
-) -> tuple[float, bool]:
-    """Return the sampling time, and whether the samples have to be made even first."""
+) -> tuple[float, Mask | None]:
+    """Return the sampling time, and which even samples were lost; None if the samples are even."""
     steps = np.diff(times)
     if times.size < FEWEST_SAMPLES:
         raise _too_short(times.size)
@@ -512,24 +516,37 @@ def _even(
     even = times[0] + step * np.arange(times.size)
     mean = (times[-1] - times[0]) / (times.size - 1)
     if np.all(np.abs(steps - mean) <= JITTER * mean):
-        return float(f"{mean:.9g}"), False
+        return float(f"{mean:.9g}"), None
     gaps = steps > (1 + UNEVEN) * step
-    if 0 < gaps.mean() <= MOST_GAPS:
+    # Where all others are even, the sampling time is that of the whole record.
+    places = np.round((times - times[0]) / step)
+    whole = float((times[-1] - times[0]) / places[-1])
+    is_even = bool(np.all(np.abs(times - times[0] - places * whole) <= JITTER * whole))
+    if gaps.any() and (gaps.mean() <= MOST_GAPS or (is_even and 2 * times.size > places[-1])):
         i = int(np.argmax(gaps))
         many = f" and {int(gaps.sum()) - 1} more" if gaps.sum() > 1 else ""
         guesses.append(f"samples are missing from {times[i]:.6g} to {times[i + 1]:.6g} s{many}: interpolated")
+        if is_even:
+            return whole, ~np.isin(np.arange(places[-1] + 1), places)
     elif np.max(np.abs(times - even)) > JITTER * step:
         spread = float(np.max(np.abs(steps / step - 1)))
         much = f"off by up to {spread:.0%} of a step" if spread < 1 else "steps differ"
         guesses.append(f"the times are not even ({much}), and samples are interpolated every {step:.4g} s")
-    return step, True
+    return step, np.zeros(round(float(times[-1] - times[0]) / step) + 1, bool)
+
+
+def _missing(lost: Mask | None, record: TimeRecord) -> Mask | None:
+    """Return which samples of a record were lost, None where none were."""
+    if lost is None or not lost.any():
+        return None
+    return np.pad(lost, (record.outputs[0][1].size - lost.size, 0))  # a step has one before them
 
 
 def _resampled(times: Real, values: Real, step: float) -> Real:
     """Return samples at even times, on the lines between those there are; few levels are held."""
-    even = np.arange(times[0], times[-1] + step / 2, step)
+    even = times[0] + step * np.arange(round(float(times[-1] - times[0]) / step) + 1)
     if np.unique(values).size < LEVELS:
-        return values[np.searchsorted(times, even, "right") - 1]
+        return np.asarray(values[np.searchsorted(times, even + step / 4, "right") - 1], np.float64)
     return np.asarray(np.interp(even, times, values), np.float64)
 
 
@@ -542,11 +559,12 @@ def _asked(
         message = f"--columns has {len(words)} words, and there are {len(channels)} columns"
         raise refused(message, "such as t,u,y or t_ms,-,u,y")
     at = next((i for i, word in enumerate(words) if word.partition("_")[0] in ("t", "time")), None)
-    step, kept, times = number(interval[3:]), False, np.empty(0)
+    step, times = number(interval[3:]), np.empty(0)
+    lost: Mask | None = None
     if not interval and at is not None:
         times = channels[at][1] * float(SECONDS.get(words[at].partition("_")[2], 1))
         times = _seconds(times, guesses) if words[at] == "t" else times
-        step, kept = _even(times, *location, guesses)
+        step, lost = _even(times, *location, guesses)
     if not (isinstance(step, float) and 0 < step < np.inf):
         raise refused(
             f"--columns: '{interval[:40]}' is not a sampling time in seconds", "such as u,y,dt=0.01"
@@ -558,7 +576,7 @@ def _asked(
         if word.rstrip("0123456789") not in made:
             message = f"--columns: unknown column '{word[:40]}' of a time record"
             raise refused(message, "t (or t_ms, t_us), u, y, -, dt=0.01")
-        values = _resampled(times, channels[i][1], step) if kept else channels[i][1]
+        values = channels[i][1] if lost is None else _resampled(times, channels[i][1], step)
         if values.size < FEWEST_SAMPLES or not np.isfinite(values).all():
             message = f"column {i + 1} has not {FEWEST_SAMPLES} finite numbers, or contains something else"
             raise DataError(Diagnostic("SF603", message, None, "choose another column, or leave lines out"))
@@ -569,7 +587,8 @@ def _asked(
     source, outputs = next(iter(made["u"]), None), made["y"]
     if source and np.ptp(source[1]) == 0 and source[1][0]:
         source, *outputs = _from_zero([source, *outputs], source[0], guesses)
-    return TimeRecord(stem, step, tuple(outputs), source, tuple(guesses))
+    record = TimeRecord(stem, step, tuple(outputs), source, tuple(guesses))
+    return replace(record, is_missing=_missing(lost, record))
 
 
 def _asked_arrays(arrays: Arrays, words: Sequence[str], interval: str, name: str, stem: str) -> TimeRecord:
@@ -615,13 +634,14 @@ def _of_arrays(arrays: Arrays, name: str, stem: str) -> TimeRecord | None:
     if not long:
         return None
     guesses, key = list[str](), ""
+    lost: Mask | None = None
     timed = next(((k, m) for k in long if (m := TIME.fullmatch(k))), None)
     if timed is not None:
         key, match = timed
         times = long[key] * float(SECONDS[(match["unit"] or match["alone"] or "s").lower()])
-        step, kept = _even(times, None, (), guesses)
+        step, lost = _even(times, None, (), guesses)
         others = [(k, x) for k, x in long.items() if x.size == times.size and k != key]
-        channels = [(k, _resampled(times, x, step) if kept else x) for k, x in others]
+        channels = [(k, x if lost is None else _resampled(times, x, step)) for k, x in others]
     else:
         single = {k: float(a.ravel()[0]) for k, a in plain.items() if a.size == 1 and np.isfinite(a).all()}
         rate = next((v for k, v in single.items() if _RATE.fullmatch(k) and v > 0), np.inf)
@@ -634,7 +654,8 @@ def _of_arrays(arrays: Arrays, name: str, stem: str) -> TimeRecord | None:
         return None
     named = _in_si([*(k for k, _ in channels), key], (), [x for _, x in channels])
     option = f"u=NAME,y=NAME,dt={step:.6g}"
-    return _with_units(_sorted(named.channels, step, stem, name, guesses, option), named)
+    record = _sorted(named.channels, step, stem, name, guesses, option)
+    return _with_units(replace(record, is_missing=_missing(lost, record)), named)
 
 
 def _of_matrix(key: str, matrix: npt.NDArray[Any], stem: str) -> TimeRecord | None:

@@ -1,0 +1,658 @@
+"""How many poles records in time show, and where: starts, and steps that add and remove one term at a time.
+
+A subspace method says where poles of every number may be (PO-MOESP: Verhaegen, Automatica 30, 1994). The
+likeliest of its proposals is refined; then terms are added where the spectrum of what is left has peaks, and
+removed, as long as the criterion falls:
+
+    a pair of poles     costs two nonlinear and four linear parameters, and that it may lie anywhere
+    a real pole         one and two
+    a steady sine       one and two: hum of the mains, a motor's speed; no input drives it
+
+In the same way it is decided whether the input is held or joined by lines, whether the record begins at rest,
+whether the input is delayed and whether it acts at once. Then the noise is coloured as what is left (an
+autoregression, which whitens it), and all is decided again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any, Final
+
+import numpy as np
+from scipy.linalg import hankel, lstsq, qr
+
+from symflex.budget import entered_budget, spend
+from symflex.data.fitting.output_error import DEPENDENT, MOST_DAMPING, OutputError, PoleSet, Solved
+from symflex.data.fitting.resonances import NO_PEAK, Complex, Mask, Real
+from symflex.data.fitting.sampled_record import SampledRecord, autoregression, is_held
+from symflex.data.measurement.measured_response import Samples
+
+Records = Sequence[tuple[Samples, ...]]
+"""The records of each output."""
+
+MOST_ORDER, MOST_ROWS, LONGEST = 10, 40, 6000  # poles, block rows and samples of the subspace method
+MOST_LINES = 3000  # of a record on which numbers of poles are compared
+MOST_REFINED = 4  # proposals that are refined
+MOST_ADDED = 12  # terms that a search adds at most
+TRIED = 2  # the likeliest of them, and the likeliest sine
+ROUGH, FIRST = (12, 1e-5), (25, 1e-6)  # steps and tolerance of a comparison, and of a start
+GAIN: Final = 2.0  # by how much the criterion has to fall
+AT_FIRST: Final = 30.0  # the same while noise of any colour counts as white
+PEAKS: Final = 8  # of what is left, at which terms are tried
+REGRESSORS: Final = 20  # of the regression that shows a delay
+DELAYS: Final = (0, 2, 5, 10, 18)  # samples, tried where it shows none
+NARROW: Final = 0.01  # share of an input's power on half of the lines, below which it has few frequencies
+LATE: Final = 5.0  # standard errors of its first coefficient that counts
+FILLED, MOST_LOST = 6, 400  # rounds in which lost samples are filled; more of them stay as they are guessed
+COLOURED: Final = 2  # rounds in which the noise is coloured anew
+SLOW: Final = 6.0  # angle over the whole record below which a pole may lie at zero
+SHARP: Final = 1e-3  # damping ratio below which a pair may be a steady sine
+MAINS: Final = (50.0, 60.0)  # Hz
+OFF_MAINS, MOST_HARMONICS = 1e-3, 20  # share by which their frequency may be off, harmonics that are named
+NEAR_END: Final = 0.8  # share of half the sampling rate from which a mode may be an image of another
+MOST_LAGS, PORTMANTEAU, FOLLOWS = (
+    40,
+    5.0,
+    5.0,
+)  # lags of correlations, and their deviations that are not chance
+LEAST_EXCITED: Final = 1e-4  # share of an input's largest power from which a line counts as excited
+QUIET: Final = 1e-4  # share of the output's power above a frequency from which samples are left out
+
+
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """The best dynamics with one number of poles."""
+
+    score: float
+    dynamics: PoleSet
+
+
+@dataclass(frozen=True, eq=False)
+class _State:
+    score: float
+    problem: OutputError
+    dynamics: PoleSet
+
+    @staticmethod
+    def of(problem: OutputError, dynamics: PoleSet) -> _State:
+        return _State(problem.score(dynamics), problem, dynamics)
+
+    def refined(self, steps: int, tolerance: float) -> _State:
+        spend()
+        return _State.of(self.problem, self.problem.refined(self.dynamics, steps, tolerance))
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What is known of the records, and what is asked for."""
+
+    hold: str = "auto"  # held, joined, smooth
+    criterion: str = "bic"
+    modes: int | None = None
+    slope: int | None = None
+    is_delay_free: bool = False
+    band: tuple[float, float] | None = None  # [Hz]
+
+
+class RecordSearch:
+    """The search for the dynamics of some records; :attr:`tried` has the best of each number of poles."""
+
+    def __init__(self, records: Records, settings: Settings) -> None:
+        self.records: Records = records
+        self.settings = settings
+        self.tried: dict[int, Tried] = {}
+        first = records[0][0]
+        missing = [one.is_missing for same in records for one in same if one.is_missing is not None]
+        self.lost = bool(missing) and max(int(one.sum()) for one in missing) <= MOST_LOST
+        self.is_driven = first.input is not None
+        self.integrators = max(-(settings.slope or 0), 0)
+        self.holds = [settings.hold]
+        if settings.hold == "auto":
+            held = not self.is_driven or all(
+                is_held(one.input) for same in records for one in same if one.input is not None
+            )
+            self.holds = ["held"] if held else ["held", "joined", "smooth"]
+        acts = _delay(first) if self.is_driven else 0
+        self.delays = {0, *(DELAYS if acts is None else (acts,))} if self.is_driven else {0}
+
+    def found(self) -> tuple[OutputError, PoleSet]:
+        """Return the records with their noise, and the dynamics that describe them best."""
+        state = self._filled(self._started())
+        for rebuilt in list(self._with_hold(state)):
+            other = self._filled(rebuilt.refined(*FIRST))
+            state = other if other.score < state.score else state
+        state = self._varied(self._climbed(state, AT_FIRST))
+        for _ in range(COLOURED):
+            state = self._refilled(state)
+            problem = self._coloured(state)
+            state = self._climbed(_State.of(problem, state.dynamics).refined(*FIRST))
+            state = self._varied(state)
+        state = self._refilled(state)
+        full = self._whole(state)
+        dynamics = full.refined(state.dynamics)
+        full = self._freed(full.with_noise(dynamics), dynamics)
+        return full, full.refined(dynamics)
+
+    def _freed(self, problem: OutputError, dynamics: PoleSet) -> OutputError:
+        return problem.with_lost_inputs(dynamics) if self.lost else problem
+
+    def _filled(self, state: _State) -> _State:
+        """Return the state with lost samples filled until that changes nothing."""
+        for _ in range(FILLED if self.lost else 0):
+            again = self._refilled(state)
+            if again.score > state.score - GAIN:
+                break
+            state = again
+        return state
+
+    def _refilled(self, state: _State) -> _State:
+        """Return the state with input and output as a model has them where samples were lost."""
+        if not self.lost:
+            return state
+        whole = self._freed(self._whole(state), state.dynamics)
+        errors = whole.lost_inputs(state.dynamics)
+        records = []
+        for same, guesses, made in zip(self.records, errors, whole.outputs, strict=True):
+            filled = []
+            for one, guess, record in zip(same, guesses, made, strict=True):
+                if one.is_missing is None or one.input is None or not guess.size:
+                    filled.append(one)
+                    continue
+                u, y = one.input.copy(), one.output.copy()
+                u[np.flatnonzero(one.is_missing)[-guess.size :]] += guess
+                y[-record.size :] = record.output
+                filled.append(replace(one, input=u, output=y))
+            records.append(tuple(filled))
+        self.records = records
+        return self._rebuilt(state).refined(*FIRST)
+
+    def best(self) -> tuple[OutputError, PoleSet]:
+        """Return the best so far, when time is over."""
+        problem = self.problem(hold=self.holds[-1], is_at_rest=False, lead=0)
+        dynamics = (
+            min(self.tried.values(), key=lambda one: one.score).dynamics if self.tried else PoleSet.nothing()
+        )
+        return problem.with_noise(dynamics), dynamics
+
+    def problem(self, *, hold: str, is_at_rest: bool, lead: int) -> OutputError:
+        """Return the problem of all lines, each output with the noise of its deviation."""
+        outputs = []
+        for same in self.records:
+            made = []
+            for one in same:
+                record = SampledRecord.of(
+                    one,
+                    is_joined=hold == "joined",
+                    is_at_rest=is_at_rest,
+                    lead=lead,
+                    is_smooth=hold == "smooth",
+                )
+                if self.settings.band is not None:
+                    hertz = record.omega / (2 * np.pi)
+                    record = record.at((hertz >= self.settings.band[0]) & (hertz <= self.settings.band[1]))
+                made.append(
+                    replace(record, noise=np.full(record.omega.size, max(np.std(one.output), 1e-300)))
+                )
+            outputs.append(tuple(made))
+        return OutputError(tuple(outputs), self.settings.criterion, self.settings.modes)
+
+    def _started(self) -> _State:
+        """Return the best of what the subspace method proposes."""
+        states = []
+        for delay in sorted(self.delays):
+            base = replace(PoleSet.nothing(), has_drift=True, integrators=self.integrators)
+            lead = delay + 2 if delay else 0
+            problem = _thinned(self.problem(hold=self.holds[0], is_at_rest=False, lead=lead))
+            if delay:
+                base = replace(base, delay_s=delay * problem.step_s, is_delay_free=True)
+            states.append(_State.of(problem, base))
+            states += [_State.of(problem, base.with_terms(one)) for one in _subspace(self.records[0], delay)]
+        best = sorted(states, key=lambda one: one.score)[:MOST_REFINED]
+        more = [
+            other for one in best for change in (self._with_rest, self._with_hold) for other in change(one)
+        ]
+        best = sorted([*best, *more], key=lambda one: one.score)[:MOST_REFINED]
+        return min((one.refined(*FIRST) for one in best), key=lambda one: one.score)
+
+    def _note(self, state: _State) -> None:
+        order = state.dynamics.order
+        if order not in self.tried or state.score < self.tried[order].score:
+            self.tried[order] = Tried(state.score, state.dynamics)
+
+    def _climbed(self, state: _State, gain: float = GAIN) -> _State:
+        """Return the state with terms added, and removed, as long as the criterion falls."""
+        self.tried = {}
+        self._note(state)
+        for step in range(MOST_ADDED):
+            entered_budget().progress.report(step / MOST_ADDED, f"{state.dynamics.order} poles")
+            best = state
+            for more in self._proposed(state):
+                grown = _State(0.0, state.problem, state.dynamics.with_terms(more)).refined(*ROUGH)
+                self._note(grown)
+                best = grown if grown.score < min(best.score, state.score - gain) else best
+            if best is state:
+                break
+            state = self._refilled(best)
+        state = state.refined(*FIRST)
+        self._note(state)
+        return self._shrunk(state)
+
+    def _shrunk(self, state: _State) -> _State:
+        """Return the state with terms removed, as long as the criterion falls."""
+        while True:
+            fewer = [one.refined(*ROUGH) for one in _reduced(state)]
+            for one in fewer:
+                self._note(one)
+            best = min(fewer, key=lambda one: one.score, default=state)
+            if best.score >= state.score:
+                return state
+            state = best
+
+    def _proposed(self, state: _State) -> list[PoleSet]:
+        """Return the likeliest terms to add: at peaks of what is left, beside poles, and broad ones."""
+        problem, dynamics = state.problem, state.dynamics
+        solved = problem.solve(dynamics)
+        nothing = PoleSet.nothing()
+
+        def pair(omega: float, zeta: float) -> PoleSet:
+            return replace(nothing, omega=np.array([omega]), zeta=np.array([zeta]))
+
+        terms: list[PoleSet] = []
+        for records, one in zip(problem.outputs, solved, strict=True):
+            for record, error in zip(records, one.errors, strict=True):
+                noise = 1.0 if record.noise is None else record.noise
+                peaks = _peaks(np.abs(error / noise))[:PEAKS]
+                terms += [pair(record.omega[k], z) for k in peaks for z in (0.002, 0.02, 0.1)]
+                terms += [replace(nothing, lines=record.omega[[k]]) for k in peaks[:4]]
+        low, high = 2 * np.pi / problem.length_s, np.pi / problem.step_s
+        terms += [pair(w, 0.4) for w in np.geomspace(1.3 * low, 0.9 * high, 6)]
+        terms += [replace(nothing, real=np.array([w])) for w in np.geomspace(0.3 * low, 0.3 * high, 5)]
+        for w, z in zip(dynamics.omega, dynamics.zeta, strict=True):
+            width = max(z, low / w)
+            terms += [
+                pair(w * (1 + k * width), z) for k in (-3, -1.5, 1.5, 3) if 0 < w * (1 + k * width) < high
+            ]
+        scores = np.array([problem.score_with(dynamics, one, solved) for one in terms])
+        order = np.argsort(scores)
+        likely = [terms[i] for i in order[:TRIED]]
+        return likely + [terms[i] for i in order if terms[i].lines.size][:1]
+
+    def _varied(self, state: _State) -> _State:
+        """Return the state with another hold, rest, delay or feedthrough, where the criterion asks for it."""
+        for change in (
+            self._with_rest,
+            self._with_hold,
+            self._with_delay,
+            self._with_direct,
+            self._with_zeros,
+        ):
+            for changed in change(state):
+                other = changed.refined(*ROUGH)
+                if change == self._with_hold:  # a wrong hold has poles that make up for it
+                    other = self._shrunk(other)
+                if other.score < state.score - GAIN:
+                    state = other
+        return state
+
+    def _rebuilt(self, state: _State, **changes: bool | int | str) -> _State:
+        """Return the state with records that begin, or hold their input, in another way."""
+        kept = _kind(state.problem) | changes
+        if kept["hold"] == "smooth":  # it never begins at rest
+            kept["is_at_rest"] = False
+        problem = _thinned(_noisy_as(self.problem(**kept), state.problem))  # type: ignore[arg-type]
+        if any(one.measured is not None for same in problem.outputs for one in same):
+            problem = self._freed(problem.filled(state.dynamics), state.dynamics)
+        return _State.of(problem, state.dynamics)
+
+    def _with_rest(self, state: _State) -> Iterator[_State]:
+        if self.is_driven and _kind(state.problem)["hold"] != "smooth":
+            yield self._rebuilt(state, is_at_rest=not state.problem.outputs[0][0].is_at_rest)
+
+    def _with_hold(self, state: _State) -> Iterator[_State]:
+        for hold in self.holds:
+            if hold != _kind(state.problem)["hold"]:
+                yield self._rebuilt(state, hold=hold)
+
+    def _with_delay(self, state: _State) -> Iterator[_State]:
+        if not self.is_driven:
+            return
+        dynamics = state.dynamics
+        if dynamics.is_delay_free:
+            if not self.settings.is_delay_free:
+                plain = replace(dynamics, delay_s=0.0, is_delay_free=False)
+                yield replace(self._rebuilt(state, lead=0), dynamics=plain)
+            return
+        late = []
+        for delay in sorted({0.3, 1.0, *(float(one) for one in self.delays if one)}):
+            moved = replace(dynamics, delay_s=delay * state.problem.step_s, is_delay_free=True)
+            rebuilt = replace(self._rebuilt(state, lead=int(delay) + 2), dynamics=moved)
+            late.append(_State.of(rebuilt.problem, moved))
+        yield from sorted(late, key=lambda one: one.score)[:TRIED]
+
+    def _with_direct(self, state: _State) -> Iterator[_State]:
+        if self.is_driven:
+            other = replace(state.dynamics, has_direct=not state.dynamics.has_direct)
+            yield replace(state, dynamics=other)
+        yield replace(state, dynamics=replace(state.dynamics, has_drift=not state.dynamics.has_drift))
+
+    def _with_zeros(self, state: _State) -> Iterator[_State]:
+        """Yield the state with slow poles at zero, as those of what moves freely."""
+        if not self.is_driven or self.settings.slope is not None:
+            return
+        dynamics, slow = state.dynamics, SLOW / state.problem.length_s
+        is_slow = dynamics.real < slow
+        if is_slow.any() and dynamics.integrators < 2:  # noqa: PLR2004 (what moves freely has two)
+            slowest = int(np.argmin(dynamics.real))
+            fewer = replace(
+                dynamics, real=np.delete(dynamics.real, slowest), integrators=dynamics.integrators + 1
+            )
+            yield replace(state, dynamics=fewer)
+        is_slow = dynamics.omega < slow
+        if is_slow.any() and not dynamics.integrators:
+            slowest = int(np.argmin(dynamics.omega))
+            yield replace(state, dynamics=replace(_without_pair(dynamics, slowest), integrators=2))
+
+    def _whole(self, state: _State) -> OutputError:
+        """Return the problem of all lines that a state belongs to."""
+        whole = self.problem(**_kind(state.problem))  # type: ignore[arg-type]
+        return _noisy_as(whole, state.problem).filled(state.dynamics)
+
+    def _coloured(self, state: _State) -> OutputError:
+        """Return the thinned problem with the noise that all lines show."""
+        return self._freed(_thinned(self._whole(state).with_noise(state.dynamics)), state.dynamics)
+
+
+def _kind(problem: OutputError) -> dict[str, bool | int | str]:
+    """Return how the records of a problem begin, and hold their input."""
+    one = problem.outputs[0][0]
+    return {"hold": hold_of(one), "is_at_rest": one.is_at_rest, "lead": one.lead}
+
+
+def hold_of(record: SampledRecord) -> str:
+    """Return what an input does between samples."""
+    return "smooth" if record.is_smooth else "joined" if record.is_joined else "held"
+
+
+def _noisy_as(problem: OutputError, other: OutputError) -> OutputError:
+    """Return a problem whose noise is that of another."""
+    outputs = []
+    for records, others in zip(problem.outputs, other.outputs, strict=True):
+        pairs = zip(records, others, strict=True)
+        outputs.append(
+            tuple(
+                r if o.noise is None else replace(r, noise=np.interp(r.omega, o.omega, o.noise))
+                for r, o in pairs
+            )
+        )
+    return replace(problem, outputs=tuple(outputs))
+
+
+def _thinned(problem: OutputError) -> OutputError:
+    """Return a problem with at most so many lines of each record, densely where its output is large."""
+    return replace(
+        problem, outputs=tuple(tuple(one.at(_telling(one)) for one in same) for same in problem.outputs)
+    )
+
+
+def _telling(record: SampledRecord) -> Mask:
+    kept = np.ones(record.omega.size, bool)
+    if kept.size <= MOST_LINES:
+        return kept
+    width = max(kept.size // MOST_LINES, 9) | 1
+    power = np.convolve(np.abs(record.output_lines) ** 2, np.ones(width) / width, "same")
+    density = np.sqrt(power / np.max(power)) + 0.1 * np.mean(np.sqrt(power / np.max(power)))
+    total = np.cumsum(density) / np.sum(density)
+    chosen = np.searchsorted(total, (np.arange(MOST_LINES) + 0.5) / MOST_LINES)
+    kept[:] = False
+    kept[np.minimum(chosen, kept.size - 1)] = True
+    return kept
+
+
+def _without_pair(dynamics: PoleSet, i: int) -> PoleSet:
+    return replace(dynamics, omega=np.delete(dynamics.omega, i), zeta=np.delete(dynamics.zeta, i))
+
+
+def _reduced(state: _State) -> Iterator[_State]:
+    """Yield states with a term less, or with a simpler one in its place."""
+    dynamics = state.dynamics
+    for i, (w, z) in enumerate(zip(dynamics.omega, dynamics.zeta, strict=True)):
+        fewer = _without_pair(dynamics, i)
+        yield replace(state, dynamics=fewer)
+        if z < SHARP:
+            yield replace(state, dynamics=replace(fewer, lines=np.append(fewer.lines, w)))
+        if z > NO_PEAK:
+            yield replace(state, dynamics=replace(fewer, real=np.append(fewer.real, w)))
+            apart = w * (z + np.array([-1.0, 1.0]) * np.sqrt(max(z * z - 1, 0.01)))
+            yield replace(
+                state, dynamics=replace(fewer, real=np.append(fewer.real, np.maximum(apart, 0.05 * w)))
+            )
+    for name in ("real", "lines"):
+        values = getattr(dynamics, name)
+        for i in range(values.size):
+            kept: dict[str, Any] = {name: np.delete(values, i)}
+            yield replace(state, dynamics=replace(dynamics, **kept))
+    if dynamics.real.size > 1:
+        order = np.argsort(dynamics.real)
+        for a, b in pairwise(order):
+            left = replace(dynamics, real=np.delete(dynamics.real, [a, b]))
+            middle, mean = np.sqrt(dynamics.real[a] * dynamics.real[b]), dynamics.real[[a, b]].mean()
+            zeta = min(mean / middle, MOST_DAMPING - 0.01)
+            yield replace(
+                state,
+                dynamics=replace(left, omega=np.append(left.omega, middle), zeta=np.append(left.zeta, zeta)),
+            )
+
+
+def _peaks(size: Real) -> list[int]:
+    """Return the lines at which a spectrum has peaks, the largest first."""
+    smooth = np.convolve(size, [0.25, 0.5, 0.25], "same")
+    inner = np.flatnonzero((smooth[1:-1] >= smooth[:-2]) & (smooth[1:-1] >= smooth[2:])) + 1
+    return [int(k) for k in inner[np.argsort(-smooth[inner])]]
+
+
+def _detrended(values: Real) -> Real:
+    time = np.linspace(-1, 1, values.size)
+    return np.asarray(values - np.mean(values) - time * (time @ values) / (time @ time), np.float64)
+
+
+def _delay(samples: Samples) -> int | None:
+    """Return the samples after which an input acts, by a regression of the output on both (ARX)."""
+    # None where it does not tell, as where the input has few frequencies.
+    assert samples.input is not None
+    power = np.sort(np.abs(np.fft.rfft(samples.input[:LONGEST])[1:]) ** 2)
+    if power[: power.size // 2].sum() < NARROW * power.sum():
+        return None
+    y, u = _detrended(samples.output)[:LONGEST], samples.input[:LONGEST]
+    n = min(REGRESSORS, y.size // 6)
+    columns = [np.append(np.zeros(k), y[: y.size - k]) for k in range(1, n + 1)]
+    columns += [np.append(np.zeros(k), u[: u.size - k]) for k in range(n + 1)]
+    matrix = np.column_stack((*columns, np.ones(y.size)))[n:]
+    scale = np.linalg.norm(matrix, axis=0) + 1e-300
+    values, vectors = np.linalg.eigh((matrix / scale).T @ (matrix / scale))
+    if values[0] < DEPENDENT * values[-1]:
+        return None
+    inverse = (vectors / values) @ vectors.T
+    coefficients = inverse @ ((matrix / scale).T @ y[n:])
+    residual = y[n:] - (matrix / scale) @ coefficients
+    errors = np.sqrt(np.diag(inverse) * (residual @ residual) / max(residual.size - coefficients.size, 1))
+    acts = np.abs(coefficients / errors)[n : 2 * n + 1] > LATE
+    return max(int(np.argmax(acts)) - 1, 0) if acts.any() else None
+
+
+def _subspace(records: Sequence[Samples] | tuple[Samples, ...], delay: int) -> Iterator[PoleSet]:
+    """Yield poles of every number up to a most, of the first record of an output."""
+    one = records[0]
+    y, u, step = _detrended(one.output), one.input, one.step_s
+    if u is not None:
+        u = np.append(np.full(delay, u[0]), u[: u.size - delay]) - np.mean(u)
+    if y.size > LONGEST:
+        y, u, step = _slower(y, u, step)
+    rows = int(min(MOST_ROWS, max(6, y.size // 8)))
+    future, past = _block(y, rows)
+    if u is None:
+        spans = np.linalg.svd(qr(np.vstack((past, future)).T, mode="r")[0][: 2 * rows].T[rows:, :rows])[0]
+    else:
+        u_future, u_past = _block(u, rows)
+        triangle = qr(np.vstack((u_future, u_past, past, future)).T, mode="r")[0][: 4 * rows].T
+        spans = np.linalg.svd(triangle[3 * rows :, rows : 3 * rows])[0]
+    for order in range(1, min(MOST_ORDER + 1, rows - 1)):
+        z = np.linalg.eigvals(lstsq(spans[:-1, :order], spans[1:, :order])[0]).astype(complex)
+        yield _of_poles(np.log(z[z.imag >= 0]) / step, step, y.size * step)
+
+
+def _block(values: Real, rows: int) -> tuple[Real, Real]:
+    """Return the matrices of future and past samples."""
+    both = hankel(values[: 2 * rows], values[2 * rows - 1 :])
+    return both[rows:], both[:rows]
+
+
+def _of_poles(poles: Complex, step: float, length: float) -> PoleSet:
+    is_pair = (poles.imag > 1e-3 * np.abs(poles)) & (poles.imag < 0.98 * np.pi / step)
+    pairs, real = poles[is_pair], poles[poles.imag <= 1e-3 * np.abs(poles)].real
+    size = np.abs(pairs)
+    return replace(
+        PoleSet.nothing(),
+        omega=size,
+        zeta=np.clip(-pairs.real / size, 1e-4, 0.95),
+        real=np.maximum(np.abs(real), 0.1 / length),
+    )
+
+
+def _slower(y: Real, u: Real | None, step: float) -> tuple[Real, Real | None, float]:
+    """Return a long record at a lower rate, of frequencies at which the output is, or its first part."""
+    spectrum = np.fft.rfft(y)
+    power = np.cumsum(np.abs(spectrum) ** 2)
+    above = int(np.argmax(power > (1 - QUIET) * power[-1]))
+    size = 2 * max(min(2 * above, spectrum.size - 1), LONGEST // 4)
+    share = size / y.size
+    if share < 1:
+        step /= share
+        u = None if u is None else np.fft.irfft(np.fft.rfft(u)[: size // 2 + 1], size) * share
+        y = np.fft.irfft(spectrum[: size // 2 + 1], size) * share
+    return y[:LONGEST], None if u is None else u[:LONGEST], step
+
+
+@dataclass(frozen=True, eq=False)
+class Sine:
+    """A steady sine that disturbs an output."""
+
+    frequency_hz: float
+    error_hz: float
+    amplitudes: tuple[float, ...]  # of each output
+    name: str  # the mains, or one of its harmonics, or empty
+
+
+@dataclass(frozen=True, eq=False)
+class RecordTerms:
+    """What a fit in time finds besides poles and zeros; a value for each output."""
+
+    hold: str
+    is_at_rest: bool
+    is_driven: bool
+    samples: tuple[int, ...]
+    step_s: float
+    offsets: tuple[float | None, ...]  # of the output, at the middle of the record
+    drifts: tuple[float, ...] | None  # per second
+    sines: tuple[Sine, ...]
+    is_coloured: tuple[bool, ...]  # whether what disturbs an output is not white
+    residual: tuple[float, ...]  # root mean square
+    residual_share: tuple[float, ...]  # over that of the output
+    warnings: tuple[str, ...]
+    poor: tuple[str, ...]
+
+
+def described(
+    problem: OutputError, dynamics: PoleSet, errors: Real, samples: Sequence[Samples]
+) -> RecordTerms:
+    """Return what a fit in time found besides poles and zeros, and how far it may be trusted."""
+    # The errors are those of the parameters of a search.
+    solved = problem.solve(dynamics)
+    first = [records[0] for records in problem.outputs]
+    one = first[0]
+    offsets, drifts, amplitudes, residuals, shares, is_coloured = [], [], [], [], [], []
+    for r, (record, fit, raw) in enumerate(zip(first, solved, samples, strict=True)):
+        rest = record.samples(fit.errors[0])
+        residuals.append(float(np.std(rest)))
+        shares.append(residuals[-1] / max(float(np.std(raw.output)), 1e-300))
+        is_coloured.append(record.noise is not None and bool(np.ptp(record.noise) > 0))
+        own = fit.coefficients[-(2 * dynamics.lines.size) :] if dynamics.lines.size else np.zeros(0)
+        turns = 1 - np.exp(1j * dynamics.lines * record.size * record.step_s)
+        with np.errstate(all="ignore"):
+            amplitudes.append(2 * np.abs(own.reshape(-1, 2) @ [1, 1j] / turns))
+        offsets.append(problem.offset(dynamics, r, 0.0 if raw.input is None else float(raw.input[0])))
+        if dynamics.has_drift and not (dynamics.integrators and not record.is_at_rest):
+            drifts.append(float(-fit.coefficients[-1 - own.size] / (record.size * record.step_s)))
+    at = 2 * dynamics.omega.size + dynamics.real.size
+    sines = []
+    for k, w in enumerate(dynamics.lines):
+        hertz = float(w / (2 * np.pi))
+        error = float(errors[at + k] / (2 * np.pi * problem.length_s))
+        heights = tuple(float(each[k]) for each in amplitudes)
+        sines.append(Sine(hertz, error, heights, _mains(hertz, error, problem.length_s)))
+    sines.sort(key=lambda each: each.frequency_hz)
+    warnings, poor = _doubts(problem, dynamics, solved)
+    return RecordTerms(
+        hold_of(one), one.is_at_rest, one.input is not None, tuple(r.size for r in first), one.step_s,
+        tuple(offsets), tuple(drifts) or None,
+        tuple(sines), tuple(is_coloured), tuple(residuals), tuple(shares), tuple(warnings), tuple(poor),
+    )  # fmt: skip
+
+
+def _mains(hertz: float, error: float, length_s: float) -> str:
+    """Return which harmonic of the mains a sine is, if it is one."""
+    for mains in MAINS:
+        harmonic = round(hertz / mains)
+        near = max(3 * error, 0.1 / length_s, OFF_MAINS * hertz)
+        if 1 <= harmonic <= MOST_HARMONICS and abs(hertz - harmonic * mains) <= near:
+            return f"mains of {mains:g} Hz" + (f", harmonic {harmonic}" if harmonic > 1 else "")
+    return ""
+
+
+def _doubts(problem: OutputError, dynamics: PoleSet, solved: Sequence[Solved]) -> tuple[list[str], list[str]]:
+    """Return what to be careful about, and why the fit is poor."""
+    warnings, poor = [], []
+    nyquist = np.pi / problem.step_s
+    for w, z in zip(dynamics.omega, dynamics.zeta, strict=True):
+        if w > NEAR_END * nyquist and z < NO_PEAK:
+            hertz, other = w / (2 * np.pi), (2 * nyquist - w) / (2 * np.pi)
+            end = f"half the sampling rate, {nyquist / (2 * np.pi):.4g} Hz"
+            warnings.append(
+                f"the pole pair at {hertz:.4g} Hz is near {end}: it may be the image of one at {other:.4g} Hz"
+            )
+    for records, one in zip(problem.outputs, solved, strict=True):
+        for record, errors in zip(records, one.errors, strict=True):
+            if record.lines is not None or record.noise is None:
+                continue
+            white = record.samples(errors / record.noise)
+            lags = min(MOST_LAGS, white.size // 4)
+            power = np.fft.irfft(np.abs(np.fft.rfft(white, 2 * white.size)) ** 2)[: lags + 1]
+            total = white.size * float(np.sum((power[1:] / power[0]) ** 2))
+            if total > lags + PORTMANTEAU * np.sqrt(2 * lags):
+                poor.append("what is left of the output is not white: the model lacks something")
+            elif record.input is not None and (lag := _feedback(record, white)):
+                warnings.append(
+                    f"the input follows the disturbance after {lag} samples: the record is of a closed loop, "
+                    "and the fit is right as far as its model of the disturbance is"
+                )
+    u = problem.outputs[0][0]
+    if u.input is not None and dynamics.order:
+        power = np.abs(u.input_lines(0)) ** 2
+        excited = int(np.sum(power > LEAST_EXCITED * power.max()))
+        parameters = 2 * dynamics.order + dynamics.has_direct
+        if 2 * excited < parameters and u.is_at_rest:
+            poor.append(f"the input has {excited} frequencies, and the fit {parameters} parameters")
+    return warnings, list(dict.fromkeys(poor))
+
+
+def _feedback(record: SampledRecord, white: Real) -> int:
+    """Return after how many samples the input follows what disturbs the output; 0 if it does not."""
+    u = record.samples(record.input_lines(0))
+    coefficients, _ = autoregression(u)
+    u = np.convolve(u, coefficients)[: u.size]
+    n = u.size
+    cross = np.fft.irfft(np.conj(np.fft.rfft(white, 2 * n)) * np.fft.rfft(u, 2 * n))[1 : MOST_LAGS + 1]
+    share = np.abs(cross) / max(np.sqrt(float(white @ white) * float(u @ u)), 1e-300)
+    top = int(np.argmax(share))
+    return top + 1 if share[top] > FOLLOWS / np.sqrt(n) else 0
