@@ -31,7 +31,6 @@ from symflex.expressions import (
     format_expression,
     is_number,
     names,
-    nodes,
     number,
 )
 from symflex.papers.formula import LAPLACE, Matrix, PaperNotation, PrintedSymbol, defined_symbol, read_value
@@ -75,7 +74,8 @@ class _PaperMotion:
 
 def motion_specification(paper: Paper, title: str) -> str:
     """Return the specification of the equations of motion in a paper; SF115 when there are none."""
-    is_field = any(r"\partial" in text_of(d.tokens) for d in paper.displays)
+    # Lagrange's equations have partial derivatives too, but none in time alone.
+    is_field = any(re.search(r"\\partial(t|x\^)", text_of(d.tokens)) for d in paper.displays)
     found = _read(paper, PaperNotation({PrintedSymbol("s"): LAPLACE}, motion="field" if is_field else "time"))
     if not any(
         isinstance(n, Derivative | Call)
@@ -122,11 +122,11 @@ def _take(
         return
     for left, right in _rows(sides[0], sides[-1]):
         one = _Equation(left, right, equation)
-        moving = any(
-            isinstance(n, Derivative) or (isinstance(n, Name) and n.name == LAPLACE)
-            for n in (*names(left), *names(right))
-        )
-        placed = any(isinstance(n, Call) and n.name not in FUNCTIONS for n in (*names(left), *names(right)))
+        held = (*names(left), *names(right))
+        moving = any(isinstance(n, Derivative) for n in held)
+        if notation.motion == "field":
+            moving |= any(isinstance(n, Name) and n.name == LAPLACE for n in held)
+        placed = any(isinstance(n, Call) and n.name not in FUNCTIONS for n in held)
         if (moving or placed) and not is_inline:
             found.equations.append(one)
         elif defined_symbol(equation) is not None and isinstance(left, Name) and not _is_value(right):
@@ -187,12 +187,6 @@ def _named(expressions: Iterable[Expression]) -> dict[str, None]:
 def _text(found: _PaperMotion, title: str) -> str:
     sides = [e for one in found.equations for e in (one.left, one.right)]
     derived = dict.fromkeys(n.name for e in sides for n in names(e) if isinstance(n, Derivative))
-    derived |= dict.fromkeys(
-        n.name
-        for e in sides
-        for n in names(e)
-        if isinstance(n, Name) and n.name in found.timed and _times_s(e, n)
-    )
     unknowns = list(derived)
     kept: dict[str, Expression] = {}
     for name, (value, printed) in found.definitions.items():
@@ -227,12 +221,6 @@ def _text(found: _PaperMotion, title: str) -> str:
         ]
         lines += [f'{name} = "0"' for name in (*unknowns, *inputs)]
     return "\n".join([*lines, *_ends(unknowns, inputs), ""])
-
-
-def _times_s(expression: Expression, name: Expression) -> bool:
-    return any(
-        isinstance(n, Product) and Name(LAPLACE) in n.factors and name in n.factors for n in nodes(expression)
-    )
 
 
 def _heading(found: _PaperMotion, title: str) -> Iterator[str]:
@@ -275,6 +263,10 @@ def _inputs(
         for term in one.terms:
             held = [n for n in _named([term]) if n not in (*kept, *CONSTANT)]
             if set(held) & set(unknowns):
+                continue
+            if "t" in held:
+                said = f"the term {format_expression(term)} of line {one.printed.span.line}"
+                found.gaps.append(f"{said} is a function of time; give it a name as an input")
                 continue
             timed = [n for n in held if n in found.timed]
             alone = [n for n in held if n not in beside] or (held if len(held) == 1 else [])

@@ -87,6 +87,19 @@ def test_what_is_not_read_is_a_gap() -> None:
     assert "# GAP: the term m*g of line 1 has no unknown in it and is no input" in text
 
 
+def test_a_function_of_time_is_a_gap_and_no_parameter_becomes_an_input() -> None:
+    text = specification(r"\[ m\ddot x + kx = F_0\cos(\omega t) \]")
+    assert (
+        "# GAP: the term F_0*cos(omega*t) of line 1 is a function of time; give it a name as an input" in text
+    )
+    assert "# GAP: no input was found: add what acts to an equation and to [inputs]" in text
+
+
+def test_partial_derivatives_of_lagrange_make_no_field() -> None:
+    text = specification(r"\[ \frac{\partial L}{\partial q} = 0 \] \[ m\ddot q + kq = Q \]")
+    assert equations(text) == ["m*q'' + k*q = Q"]
+
+
 def test_a_paper_without_motion_is_refused() -> None:
     with pytest.raises(SpecError, match="there are no equations of motion"):
         specification(r"\[ G = \frac{1}{s} \]")
