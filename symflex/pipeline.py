@@ -97,14 +97,26 @@ def fit_parameters(measured: Sequence[MeasuredResponse], given: FitOptions) -> P
     """
     from symflex.data.fitting import parameters  # imports scipy
 
-    model = load(str(given.model), given.allow_outside)
     names = [name.strip() for name in given.free.split(",") if name.strip()]
-    defined = [d.name for d in model.definitions]
-    parameters.refuse_free(names, {p.name: p for p in model.settable}, defined)
-    pairs = _pairs_of(model, measured, given.tfs)
-    low, high = min(one.omega[0] for one in measured), max(one.omega[-1] for one in measured)
-    machine = _machine(str(given.model), model, pairs, names, (float(low), float(high)))
+    machine = machine_of(str(given.model), measured, names, given.tfs, given.allow_outside)
     return parameters.fit_parameters(measured, machine)
+
+
+def machine_of(
+    path: str | Path,
+    measured: Sequence[MeasuredResponse],
+    names: Sequence[str],
+    tfs: Sequence[str] = (),
+    allow_outside: Iterable[str | Path] = (),
+) -> Machine:
+    """Return the functions of a specification that were measured, ready for fits of some parameters."""
+    from symflex.data.fitting.parameters import refuse_free
+
+    model = load(path, allow_outside)
+    refuse_free(names, {p.name: p for p in model.settable}, [d.name for d in model.definitions])
+    pairs = _pairs_of(model, measured, tfs)
+    low, high = min(one.omega[0] for one in measured), max(one.omega[-1] for one in measured)
+    return _machine(str(path), model, pairs, names, (float(low), float(high)))
 
 
 def _pairs_of(
