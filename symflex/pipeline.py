@@ -99,7 +99,7 @@ def fit_parameters(measured: Sequence[MeasuredResponse], given: FitOptions) -> P
 
     names = [name.strip() for name in given.free.split(",") if name.strip()]
     machine = machine_of(str(given.model), measured, names, given.tfs, given.allow_outside)
-    return parameters.fit_parameters(measured, machine)
+    return parameters.fit_parameters(measured, machine, given.hold)
 
 
 def machine_of(

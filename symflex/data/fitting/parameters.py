@@ -371,13 +371,18 @@ def _real(values: Values) -> Real:
     )
 
 
-def fit_parameters(measured: Sequence[MeasuredResponse], machine: Machine) -> ParameterFit:
-    """Fit the free parameters of a machine to a response for each of its functions, or to records in time."""
+def fit_parameters(
+    measured: Sequence[MeasuredResponse], machine: Machine, hold: str = "auto"
+) -> ParameterFit:
+    """Fit the free parameters of a machine to a response for each of its functions, or to records in time.
+
+    ``hold`` says how inputs of records run between samples, as :attr:`symflex.options.FitOptions.hold`.
+    """
     measured = [_in_unit(one, function) for one, function in zip(measured, machine.functions, strict=True)]
     rank = machine.identifiability.rank
     found = _fit_responses(measured, machine, rank)
     are_records = all(one.samples and all(same.input is not None for same in one.samples) for one in measured)
-    return _fit_records(measured, found) if are_records else found
+    return _fit_records(measured, found, hold) if are_records else found
 
 
 def _fit_responses(measured: Sequence[MeasuredResponse], machine: Machine, rank: int) -> ParameterFit:
@@ -821,15 +826,15 @@ class _RecordRest(_MachineRest):
         return residuals, slopes
 
 
-def _fit_records(measured: Sequence[MeasuredResponse], begun: ParameterFit) -> ParameterFit:
+def _fit_records(measured: Sequence[MeasuredResponse], begun: ParameterFit, hold: str) -> ParameterFit:
     """Fit the free parameters to records in time, from what their frequency responses gave."""
     machine = begun.machine
     starts = [machine.point(begun.theta), np.zeros(len(machine.names))]
     chosen: tuple[float, Real, list[_Record]] | None = None
-    for holds in _holds(measured):
+    for is_joined in _holds(measured, hold):
         for begins in BEGINNINGS:
             records = [
-                _Record(r, same, holds, begins, np.ones(1), float(np.std(same.output)) or 1.0)
+                _Record(r, same, is_joined, begins, np.ones(1), float(np.std(same.output)) or 1.0)
                 for r, one in enumerate(measured)
                 for same in one.samples
             ]
@@ -867,8 +872,10 @@ def _best_of_random(rest: _RecordRest, x: Real, starts: Sequence[Real]) -> Real:
     return min(found, key=lambda one: one[0])[1]
 
 
-def _holds(measured: Sequence[MeasuredResponse]) -> tuple[bool, ...]:
+def _holds(measured: Sequence[MeasuredResponse], hold: str) -> tuple[bool, ...]:
     """Return whether lines may join the samples of the inputs: not where these show that they are held."""
+    if hold != "auto":
+        return (hold != "held",)
     inputs = [same.input for one in measured for same in one.samples if same.input is not None]
     return (False,) if all(map(is_held, inputs)) else (False, True)
 

@@ -360,3 +360,13 @@ def test_a_fitted_specification_has_values_errors_and_spreads(shell):
     assert again.code == 4
     assert "NOT IDENTIFIABLE" in again.out
     assert not (shell.folder / "not.toml").exists()
+
+
+def test_a_record_of_a_start_gives_the_parameters_of_a_motor(shell):
+    example = ROOT / "derivations" / "measured"
+    record = example / "data" / "motor_start.csv"
+    done = shell("fit", record, "--model", example / "motor.toml", "--free", "R,k,J", "--json").json
+    # the first line of motor.csv has the values
+    for found, true in zip(done["parameters"], (1.2, 0.05, 3e-5), strict=True):
+        assert abs(found["value"] - true) < 3 * found["standard_error"] < 0.1 * true
+    assert "held between samples" in done["in_time"][0]

@@ -213,8 +213,8 @@ y = "x_s"
     ),
     "cantilever": Machine(
         {"E": "180 GPa", "rho": "7000 kg/m^3", "eta": "100 us", "m": "1.2 kg"},
-        '[elements]\nbar = { type = "beam", between = ["tip", "ground"], E = "E", I = "4000 mm^4", rho = "rho", '
-        f'A = "480 mm^2", l = "1 m", eta = "eta" }}\n{TIP}',
+        '[elements]\nbar = { type = "beam", between = ["tip", "ground"], E = "E", I = "4e-9 m^4", '
+        f'rho = "rho", A = "480 mm^2", l = "1 m", eta = "eta" }}\n{TIP}',
         "X/F",
         {"E": 2.05e11, "rho": 7850.0, "eta": 3e-5, "m": 0.7},
         (1, 150, 250),
