@@ -25,9 +25,10 @@ SUFFIXES = (".pdf", ".png", ".svg")
 def fit(given: FitOptions) -> int:
     """Fit resonances to measured frequency responses.
 
-    DATA are files of columns in text, .frd, .zma, .s1p, .s2p, .uff, .mat, .npz, .json, .xlsx, .h5 or .tdms,
-    as instruments and programs save them. symflex guesses what a file does not state and prints each guess;
-    --columns overrides it. If something could mean two things, the error gives the option that decides it.
+    DATA are files of columns in text, .frd, .zma, .s1p, .s2p, .raw, .uff, .mat, .npz, .json, .xlsx, .h5 or
+    .tdms, as instruments and programs save them. symflex guesses what a file does not state and prints each
+    guess; --columns overrides it. If something could mean two things, the error gives the option that decides
+    it.
 
     Each resonance adds a pair of poles and a pair of zeros to the transfer function --base SPEC --tf OUT/IN,
     or to a gain and a power of s. Several responses are fitted together and share their poles. -o writes a

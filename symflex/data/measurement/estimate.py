@@ -24,6 +24,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -59,6 +60,7 @@ STOPPED: Final = 0.01  # share of a record in whose last level the input is swit
 PURE: Final = 1e-3  # share of an input's power beside its highest line, up to which it is one sine
 TRANSIENT: Final = 100.0  # power of a line over the median, which noise does not reach
 DIES_AWAY: Final = 0.3  # rms of the second half of a free decay over that of the first half, at most
+DIES_SLOWLY: Final = 0.5  # the same of the last quarter over the first, if every quarter has less
 ENDS: Final = 0.05  # share of a record by whose samples its ends are judged
 
 
@@ -142,13 +144,21 @@ class _Channel:
         return int(start + np.argmax(share[start:end]))
 
 
+def _dies_away(values: Real) -> bool:
+    """Return whether a record is a free decay: most of it is in its first half, or less in each quarter."""
+    first, second = (float(np.std(half)) for half in np.array_split(values, 2))
+    quarters = [float(np.std(part)) for part in np.array_split(values, 4)]
+    begins = np.argmax(np.abs(values - np.median(values))) < values.size / 8
+    falls = begins and all(a > b for a, b in pairwise(quarters)) and quarters[-1] < DIES_SLOWLY * quarters[0]
+    return second <= DIES_AWAY * first or bool(falls)
+
+
 def responses_of(record: TimeRecord, how: Estimate) -> tuple[MeasuredResponse, ...]:
     """Return the estimated response of every output of a record; SF605 when no line is left."""
     made = []
     for name, values in record.outputs:
         averages: float | None = None
-        window, halves = "", [float(np.std(half)) for half in np.array_split(values, 2)]
-        is_driven = record.input is None and halves[1] > DIES_AWAY * halves[0]
+        window, is_driven = "", record.input is None and not _dies_away(values)
         if record.input is None:
             if is_driven:
                 alone = _Channel(values, values, record.step_s)

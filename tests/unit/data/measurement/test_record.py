@@ -582,3 +582,26 @@ def test_a_reference_that_never_changes_is_no_step_of_its_own():
     rows = "\n".join(f"{i * STEP:.3f},3.2" for i in range(200))
     with pytest.raises(DataError, match="no channel of numbers that changes"):
         read_record("a.csv", f"TIME,REF1\n{rows}\n".encode(), "a")
+
+
+def test_a_decay_that_is_cut_off_early_is_no_response_to_noise(tmp_path):
+    t = np.arange(190) * 0.005
+    random = np.random.default_rng(1)
+    y = np.exp(-0.03 * 75.4 * t) * np.sin(75.4 * t) + 0.002 * random.normal(size=190)
+    (found,) = read_measurement(written(tmp_path, None, y, head="time,acc", times=t))
+    assert any("taken as a free decay" in guess for guess in found.guesses)
+    noise = signal.lfilter([1], [1, -1.9, 0.96], random.normal(size=4000))
+    (found,) = read_measurement(written(tmp_path, None, noise, head="time,acc"))
+    assert any("driven by white noise" in guess for guess in found.guesses)
+
+
+def test_a_response_keeps_its_unit_in_every_format(tmp_path):
+    (found,) = read_measurement(written(tmp_path, CHIRP, 1e3 * PUSHED, head="t [s],F [N],x [mm]"))
+    for ending in (".csv", ".npz", ".uff"):
+        if ending == ".uff":
+            pytest.importorskip("pyuff")
+        path = tmp_path / f"frf{ending}"
+        path.write_bytes(measurement_bytes(found, path))
+        (again,) = read_measurement(path)
+        assert again.unit == "m/N", ending
+        assert again.values == pytest.approx(found.values, rel=1e-4), ending
