@@ -16,6 +16,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final, Literal
 
+from symflex.algebra import LAPLACE
 from symflex.audit import Audit, TableAudit, explained_by_print, judge, judge_array
 from symflex.audit.text import VERDICTS, table_json, table_text
 from symflex.budget import spend
@@ -82,7 +83,6 @@ MOST_PAIRS: Final = 6  # transfer functions that a formula without a left side i
 MOST_LISTED: Final = 6  # symbols without a meaning
 MOST_SIDES: Final = 20
 MOST_NODES: Final = 1_000  # parts of a formula and its definitions; a Timoshenko beam's has some 300
-SHORT: Final = 2  # changes up to which a formula without a left side is called a misprint of a function
 
 
 @dataclass(frozen=True)
@@ -228,8 +228,8 @@ class _Court:
         if not claims:
             raise _Unjudged("other model", "it names no transfer function of the models")
         best: JudgedFormula | None = None
-        for tfs, formula in claims:
-            judged = self.best(item, model, tfs, formula, notation)
+        for tf, formula in claims:
+            judged = self.best(item, model, tf, formula, notation)
             if best is None or _rank(judged) > _rank(best):
                 best = judged  # of G = a = b the worst side counts
         assert best is not None
@@ -239,24 +239,29 @@ class _Court:
         self,
         item: _Item,
         model: Model,
-        tfs: Sequence[tuple[str, str]],
+        tf: tuple[str, str] | None,
         formula: Expression,
         notation: PaperNotation,
     ) -> JudgedFormula:
-        """Return the verdict on a formula that is one of so many transfer functions."""
+        """Return the verdict on a formula for a transfer function, ``None`` if it could be any.
+
+        Then it is right, or right but for a factor, or not about the model: nobody said that it should be.
+        """
         lines = self.lines(formula, model, notation, item.equation.span)
         if is_longer([formula, *(line for _, line in lines)], MOST_NODES):
             raise _Unjudged("not read", f"it has more than {MOST_NODES} parts")
         answers: list[JudgedFormula] = []
-        for tf in tfs[:MOST_PAIRS]:
-            printed = Published(tf, formula, lines, None, "", item.equation.span, is_latex=True)
+        if tf is None and not any(_holds(e, LAPLACE) for e in (formula, *(e for _, e in lines))):
+            raise _Unjudged("other model", "it names no transfer function of the models, and has no s")
+        for pair in [tf] if tf is not None else model.transfer_functions[:MOST_PAIRS]:
+            printed = Published(pair, formula, lines, None, "", item.equation.span, is_latex=True)
             for meant in dict.fromkeys((_in_radians(printed, model), printed)):
                 if not any(a.verdict == "equal" for a in answers):
                     answers.append(_judged(item, model, self.audit(model, meant)))
         best = min(answers, key=_rank)
-        is_unsure = len(tfs) > 1 and best.verdict == "different"
-        if is_unsure and not (best.audit is not None and 0 < len(best.audit.changes) <= SHORT):
-            raise _Unjudged("other model", "it is none of the transfer functions of the models")
+        if tf is None and best.verdict == "different":
+            near = f"; {best.audit.tf.name} would need: {best.slip}" if best.audit and best.slip else ""
+            raise _Unjudged("other model", f"it is none of the transfer functions of the models{near}")
         if best.verdict == "different" and best.audit is not None and not best.audit.changes:
             best = _repaired(best, self)
         return best
@@ -383,8 +388,8 @@ def _labelled(found: Sequence[PrintedEquation], labels: Sequence[tuple[int, str]
 
 def _claims(
     sides: Sequence[Expression], model: Model, known: set[str]
-) -> Iterator[tuple[tuple[tuple[str, str], ...], Expression]]:
-    """Yield which transfer functions a side of an equation should be, and the formula for it.
+) -> Iterator[tuple[tuple[str, str] | None, Expression]]:
+    """Yield which transfer function a side of an equation should be, and the formula for it.
 
     A name that is not known, as it has no meaning or this equation gives it one, is no formula.
     """
@@ -400,10 +405,10 @@ def _claims(
                     and not _is_function(formula, known)
                 ):
                     found = True
-                    yield (pair,), formula
+                    yield pair, formula
     if not found and not any(_holds(side, end) for side in sides for pair in pairs for end in pair):
         if _is_function(sides[0], known):
-            yield tuple(pairs), sides[-1]
+            yield None, sides[-1]
 
 
 def _says_something(formula: Expression, pair: tuple[str, str]) -> bool:
