@@ -32,9 +32,8 @@ from symflex.data.fitting.order import (
     refitted,
     with_own_noise,
 )
-from symflex.data.fitting.output_error import OutputError
 from symflex.data.fitting.problem import EXACT, FitProblem, fit_problem
-from symflex.data.fitting.record_search import RecordSearch, RecordTerms, Settings, described
+from symflex.data.fitting.record_search import RecordSearch, RecordTerms, Settings, Tried, described
 from symflex.data.fitting.resonances import (
     LOGARITHMIC,
     NO_PEAK,
@@ -347,13 +346,14 @@ def _fit_in_time(measured: Sequence[MeasuredResponse], given: FitOptions) -> Res
     if given.band is not None:
         reach = (2 * np.pi * given.band[0], 2 * np.pi * given.band[1])
     of_lines = replace(of_lines, reach=reach)
-    solved = problem.solve(dynamics)
-    residuals = tuple(one.residual for one in solved)
-    parameters = sum(problem.linear_terms(dynamics, r) for r in range(len(solved))) + dynamics.order
+    residuals = tuple(one.residual for one in residues.solved)
+    parameters = sum(problem.linear_terms(dynamics, r) for r in range(len(residuals))) + dynamics.order
     refined = Refined(resonances, True, residuals, covariance, 1.0, parameters)
     candidate = Candidate(resonances.order, "subspace", resonances, refined, None)
-    scores = tuple(_score_in_time(problem, search, order) for order in sorted(search.tried))
-    record = described(problem, dynamics, residues.all_errors, [one.samples[0] for one in measured])
+    scores = tuple(_score_in_time(search.tried[order]) for order in sorted(search.tried))
+    record = described(
+        problem, dynamics, residues.solved, residues.all_errors, [one.samples[0] for one in measured]
+    )
     fit = ResonanceFit(of_lines, bases, candidate, scores, given.criterion, (), (), record=record)
     errors = fit.standard_errors()
     tests = tuple(judge_zeros(resonances.one(r), errors.one(r)) for r in range(len(bases)))
@@ -362,16 +362,15 @@ def _fit_in_time(measured: Sequence[MeasuredResponse], given: FitOptions) -> Res
     return replace(fit, poor=(*reasons, *record.poor, *_poor(fit)))
 
 
-def _score_in_time(problem: OutputError, search: RecordSearch, order: int) -> Score:
-    dynamics = search.tried[order].dynamics
-    costs = [one.cost for one in problem.solve(dynamics)]
+def _score_in_time(tried: Tried) -> Score:
+    dynamics, problem, costs = tried.dynamics, tried.problem, tried.costs
     parameters = sum(problem.linear_terms(dynamics, r) for r in range(len(costs))) + dynamics.order
     size = sum(problem.sizes)
     freedom = max(size - parameters - 1, 1)
     fit = sum(n * np.log(max(cost, 1e-300) / n) for n, cost in zip(problem.sizes, costs, strict=True))
     aicc = fit + 2 * parameters * size / freedom
     count = int(np.sum(dynamics.zeta < NO_PEAK))
-    return Score(order, count, parameters, search.tried[order].score, aicc, sum(costs) / freedom, "usable")
+    return Score(dynamics.order, count, parameters, tried.score, aicc, sum(costs) / freedom, "usable")
 
 
 def _without_false_coherence(problem: FitProblem, most: int) -> tuple[FitProblem, list[str]]:

@@ -24,7 +24,6 @@ from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 import numpy as np
-from scipy.signal import medfilt
 
 from symflex.data.fitting.least_squares import EDGE, ROUGH, STEPS, search, triangle
 from symflex.data.fitting.lines import CAP
@@ -224,9 +223,10 @@ def _parted(frequency_hz: Real, difference: Real, noise: Real) -> tuple[PartedBa
     half = SMOOTHED_LINES // 2
     # On the unit circle: noise would turn an unwrapped phase by whole turns.
     padded = np.pad(np.exp(1j * difference), half, mode="edge")
-    turned = medfilt(padded.real, SMOOTHED_LINES) + 1j * medfilt(padded.imag, SMOOTHED_LINES)
-    smooth = np.angle(turned[half:-half])
-    level = medfilt(np.pad(noise, half, mode="edge"), SMOOTHED_LINES)[half:-half]
+    around = np.lib.stride_tricks.sliding_window_view
+    turned = around(padded, SMOOTHED_LINES)
+    smooth = np.angle(np.median(turned.real, axis=1) + 1j * np.median(turned.imag, axis=1))
+    level = np.median(around(np.pad(noise, half, mode="edge"), SMOOTHED_LINES), axis=1)
     limit = np.maximum(np.radians(LIMIT_DEGREES), SIGNIFICANT * level)
     outside = np.flatnonzero(np.abs(smooth) > limit)
     bands = []

@@ -15,7 +15,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from symflex.data.fitting.fit import ResonanceFit
 from symflex.data.fitting.lines import isolated, wild_lines
@@ -153,6 +152,8 @@ def _refined(systems: Sequence[_ResponseSystem], fit: ResonanceFit) -> tuple[Rea
 
     # Poles stay near those of the driven point: far from them residues have no meaning.
     reach = np.repeat([MOST_MOVED, MOST_DAMPED], start.size // 2)
+    from scipy.optimize import least_squares  # takes a third of a second, and other fits need none of it
+
     result = least_squares(
         rest, start, bounds=(start - reach, start + reach), x_scale="jac", max_nfev=MOST_STEPS
     )

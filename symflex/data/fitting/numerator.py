@@ -217,7 +217,7 @@ class Residues:
     # Math. Soc. 54, 1943): to first order the result is the fit with fewer zeros, or another power of s.
 
     def __init__(self, problem: OutputError, dynamics: PoleSet, slope: int | None) -> None:
-        covariance, solved, self.reduced = problem.covariance(dynamics)
+        covariance, self.solved, self.reduced = problem.covariance(dynamics)
         packed = dynamics.pack(problem.step_s, problem.length_s)
         self.dynamics, self.step_s = dynamics, problem.step_s
         first = problem.outputs[0][0]
@@ -229,7 +229,7 @@ class Residues:
         places = [*range(poles), *([packed.size - 1] if dynamics.is_delay_free else [])]
         values = [packed[places]]
         at = packed.size
-        for one in solved:
+        for one in self.solved:
             places += range(at, at + plant)
             values.append(one.coefficients[:plant])
             at += one.coefficients.size

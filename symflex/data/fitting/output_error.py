@@ -228,10 +228,10 @@ class OutputError:
             )
         return replace(self, outputs=outputs)
 
-    def offset(self, dynamics: PoleSet, output: int, begun: float) -> float | None:
+    def offset(self, dynamics: PoleSet, output: int, one: Solved, begun: float) -> float | None:
         """Return the mean of an output without modes and input; None where an integrator leaves it open."""
         # A record at rest is that of the input less what it begins with.
-        record, one = self.outputs[output][0], self.solve(dynamics)[output]
+        record = self.outputs[output][0]
         if dynamics.integrators:
             return None
         root, at, total = np.sqrt(record.size), 0, np.sum(record.output) / np.sqrt(record.size)

@@ -23,7 +23,6 @@ from typing import Final
 
 import numpy as np
 import numpy.typing as npt
-from scipy.signal import fftconvolve, lfilter
 from scipy.special import chdtrc, stdtrit
 
 from symflex.budget import entered_budget, spend
@@ -729,6 +728,8 @@ class _Record:
 
     def whitened(self, values: Real) -> Real:
         """Return what samples leave after the regression, over its deviation; shape (n, ...) to (k, ...)."""
+        from scipy.signal import lfilter  # takes a second, and fits to responses need none of it
+
         return np.asarray(
             lfilter(self.whitening, 1.0, values, axis=0)[self.kept] / self.deviation, np.float64
         )
@@ -786,6 +787,8 @@ class _RecordRest(_MachineRest):
 
     def model(self, record: _Record, theta: Real) -> tuple[Real, Real, Real]:
         """Return output and derivatives by parameters, and the columns of disturbances; not whitened."""
+        from scipy.signal import fftconvolve  # as above
+
         pulse, u = self.pulse(record, theta), record.samples.input
         assert u is not None  # only driven records are fitted
         driven = u - u[0] if record.begins == "level" else u
@@ -942,6 +945,8 @@ def _in_time(
 
 def _follows(record: _Record, left: Real, rank: int) -> bool:
     """Return whether what a model leaves correlates with the input (Ljung 1999, section 16.6)."""
+    from scipy.signal import lfilter  # as above
+
     u = record.samples.input
     assert u is not None  # only driven records are fitted
     source, variance = autoregression(u - u.mean())

@@ -63,10 +63,12 @@ QUIET: Final = 1e-4  # share of the output's power above a frequency from which 
 
 @dataclass(frozen=True, eq=False)
 class Tried:
-    """The best dynamics with one number of poles."""
+    """The best poles of one number, with the sums of squares that they leave."""
 
     score: float
     dynamics: PoleSet
+    problem: OutputError
+    costs: tuple[float, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,10 +76,12 @@ class _State:
     score: float
     problem: OutputError
     dynamics: PoleSet
+    costs: tuple[float, ...] = ()
 
     @staticmethod
     def of(problem: OutputError, dynamics: PoleSet) -> _State:
-        return _State(problem.score(dynamics), problem, dynamics)
+        costs = tuple(one.cost for one in problem.solve(dynamics))
+        return _State(problem.score(dynamics, costs), problem, dynamics, costs)
 
     def refined(self, steps: int, tolerance: float) -> _State:
         spend()
@@ -219,7 +223,7 @@ class RecordSearch:
     def _note(self, state: _State) -> None:
         order = state.dynamics.order
         if order not in self.tried or state.score < self.tried[order].score:
-            self.tried[order] = Tried(state.score, state.dynamics)
+            self.tried[order] = Tried(state.score, state.dynamics, state.problem, state.costs)
 
     def _climbed(self, state: _State, gain: float = GAIN) -> _State:
         """Return the state with terms added, and removed, as long as the criterion falls."""
@@ -564,11 +568,14 @@ class RecordTerms:
 
 
 def described(
-    problem: OutputError, dynamics: PoleSet, errors: Real, samples: Sequence[Samples]
+    problem: OutputError,
+    dynamics: PoleSet,
+    solved: Sequence[Solved],
+    errors: Real,
+    samples: Sequence[Samples],
 ) -> RecordTerms:
     """Return what a fit in time found besides poles and zeros, and how far it may be trusted."""
     # The errors are those of the parameters of a search.
-    solved = problem.solve(dynamics)
     first = [records[0] for records in problem.outputs]
     one = first[0]
     offsets, drifts, amplitudes, residuals, shares, is_coloured = [], [], [], [], [], []
@@ -581,7 +588,7 @@ def described(
         turns = 1 - np.exp(1j * dynamics.lines * record.size * record.step_s)
         with np.errstate(all="ignore"):
             amplitudes.append(2 * np.abs(own.reshape(-1, 2) @ [1, 1j] / turns))
-        offsets.append(problem.offset(dynamics, r, 0.0 if raw.input is None else float(raw.input[0])))
+        offsets.append(problem.offset(dynamics, r, fit, 0.0 if raw.input is None else float(raw.input[0])))
         if dynamics.has_drift and not (dynamics.integrators and not record.is_at_rest):
             drifts.append(float(-fit.coefficients[-1 - own.size] / (record.size * record.step_s)))
     at = 2 * dynamics.omega.size + dynamics.real.size

@@ -21,7 +21,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg import eig
-from scipy.signal import find_peaks, savgol_filter
 
 from symflex.budget import spend
 from symflex.data.fitting.least_squares import triangle
@@ -64,8 +63,7 @@ def find_modes(problem: FitProblem) -> list[int]:
     level = np.log(np.abs(problem.lines[0].ratio))
     noise = _noise(level)
     smooth = _smoothed(level)
-    peaks, about_peaks = find_peaks(smooth, prominence=max(LEAST_PROMINENCE, NOISE_MULTIPLE * noise))
-    return [int(peaks[i]) for i in np.argsort(-about_peaks["prominences"], kind="stable")]
+    return _peaks(smooth, max(LEAST_PROMINENCE, NOISE_MULTIPLE * noise))
 
 
 def start_from_peaks(problem: FitProblem, count: int) -> Resonances | None:
@@ -92,11 +90,8 @@ def _hidden_peak(problem: FitProblem, peaks: list[int]) -> int | None:
     line = problem.lines[0]
     level = np.log(np.abs(line.ratio / Resonances.of(modes, gain).factor(0, line.omega)))
     noise = NOISE_MULTIPLE * _noise(level)
-    places, about_peaks = find_peaks(_smoothed(level), prominence=max(LEAST_PROMINENCE, noise))
-    for i in np.argsort(-about_peaks["prominences"], kind="stable"):
-        if min(abs(int(places[i]) - peak) for peak in peaks) > APART:
-            return int(places[i])
-    return None
+    far = (k for k in _peaks(_smoothed(level), max(LEAST_PROMINENCE, noise)))
+    return next((k for k in far if min(abs(k - peak) for peak in peaks) > APART), None)
 
 
 def _one_response(
@@ -163,7 +158,43 @@ def _noise(level: Real) -> float:
 
 
 def _smoothed(level: Real) -> Real:
-    return savgol_filter(level, SMOOTHED, 2) if level.size > SMOOTHED else level
+    """Return parabolas through a few lines around each; those at the ends share the last one."""
+    if level.size <= SMOOTHED:
+        return level
+    powers = np.vander(np.arange(SMOOTHED) - SMOOTHED // 2, 3)
+    through, half = powers @ np.linalg.pinv(powers), SMOOTHED // 2
+    inner = np.convolve(level, through[half], "valid")
+    first, last = through[:half] @ level[:SMOOTHED], through[-half:] @ level[-SMOOTHED:]
+    return np.asarray(np.concatenate((first, inner, last)), np.float64)
+
+
+def _peaks(level: Real, least: float) -> list[int]:
+    """Return the lines of peaks of at least this prominence, the most prominent first.
+
+    >>> _peaks(np.array([0.0, 3.0, 1.0, 2.0, 1.5, 5.0, 0.0]), 0.4)
+    [5, 1, 3]
+    """
+    # What a peak stands above on either side is the least level until one as high.
+    values = level.tolist()
+    bases = [_least_before(values), _least_before(values[::-1])[::-1]]
+    changes = np.flatnonzero(np.diff(level))
+    rises = np.diff(level)[changes] > 0
+    turns = np.flatnonzero(rises[:-1] & ~rises[1:])
+    tops = ((changes[turns] + 1 + changes[turns + 1]) // 2).tolist()
+    found = [(values[k] - max(bases[0][k], bases[1][k]), k) for k in tops]
+    return [k for height, k in sorted(found, key=lambda one: -one[0]) if height >= least]
+
+
+def _least_before(values: list[float]) -> list[float]:
+    """Return the least of the values before each one, back to one that is higher."""
+    result, higher = [], list[tuple[float, float]]()  # values, and the least between each and the one before
+    for value in values:
+        least = value
+        while higher and higher[-1][0] <= value:
+            least = min(least, higher.pop()[1])
+        result.append(least)
+        higher.append((value, least))
+    return result
 
 
 def poles_from_vector_fitting(problem: FitProblem, order: int) -> list[Complex]:

@@ -117,12 +117,11 @@ class _Channel:
     @property
     def is_sweep_from_rest(self) -> bool:
         """Tell whether input and output begin at zero, and every frequency of the input has its time."""
-        from scipy import signal  # as below
-
         if any(abs(x[0]) > AT_REST * np.max(np.abs(x)) for x in (self.u, self.y)):
             return False
-        *_, power = signal.spectrogram(self.u, nperseg=max(self.u.size // SEGMENTS, 16))
-        return bool(power.max(axis=1).sum() > SWEPT * power.sum())
+        length = max(self.u.size // SEGMENTS, 16)
+        power = np.abs(_segments(self.u, length, length // 8, np.hanning(length))) ** 2
+        return bool(power.max(axis=0).sum() > SWEPT * power.sum())
 
     @cached_property
     def period(self) -> int | None:
@@ -336,8 +335,6 @@ def _weights(y: Real, noise: float, step_s: float, how: Estimate) -> tuple[Real,
     # ``exp(-t/tau)`` over input and output gives the transfer function at ``s = 1/tau + j omega``. If none is
     # asked for, it is as long as it may be to take what the output still does at the end below the noise.
     # Noise that it lets through correlates lines: ``1/(1 + j pi k tau/T)`` on those k apart.
-    from scipy.signal.windows import exponential  # as below
-
     length = y.size * step_s
     end = y[-max(y.size // 10, 8) :]
     remaining = 2 * float(np.max(np.abs(np.fft.rfft(end)))) / end.size
@@ -352,7 +349,7 @@ def _weights(y: Real, noise: float, step_s: float, how: Estimate) -> tuple[Real,
     asked = how.window.partition(":")[2]
     tau = float(asked or f"{length / (decays if how.window == 'hann' else np.log(100)):.4g}")
     said = f", both with an exponential window of {tau:.4g} s: a fit subtracts its decay rate from the poles"
-    weights = exponential(y.size, center=0, tau=tau / step_s, sym=False)
+    weights = np.exp(-np.arange(y.size) * step_s / tau)
     return np.asarray(weights, np.float64), f"exponential:{tau:.4g}", said
 
 
@@ -395,29 +392,29 @@ def _by_segments(channel: _Channel, how: Estimate) -> _Estimated:
     """Return Welch's estimate; of a channel that is its own input, the magnitude under white noise."""
     # Poles are in it as in the decay of its correlation function (Natural Excitation Technique, James, Carne
     # & Lauffer 1993), and errors of its lines are independent, as they are not there.
-    from scipy import signal  # takes a third of a second, and other files need none of it
-
     n = channel.u.size
     length = max(n // (how.segments or max(SEGMENTS, -(-n // LONGEST_SEGMENT))), 16)
-    given: dict[str, Any] = {"fs": 1 / channel.step_s, "nperseg": length, "detrend": "constant"}
     is_hann = how.window == "hann"
-    given |= {"window": "hann", "noverlap": length // 2} if is_hann else {"window": "boxcar", "noverlap": 0}
-    frequency, cross = signal.csd(channel.u, channel.y, **given)
-    _, of_input = signal.welch(channel.u, **given)
-    _, of_output = signal.welch(channel.y, **given)
+    overlap = length // 2 if is_hann else 0
+    weights = np.hanning(length + 1)[:-1] if is_hann else np.ones(length)
+    above, below = (_segments(x, length, overlap, weights) for x in (channel.y, channel.u))
+    scale = 2 * channel.step_s / np.sum(weights**2)  # one-sided densities
+    frequency = np.fft.rfftfreq(length, channel.step_s)
+    cross = scale * np.mean(np.conj(below) * above, axis=0)
+    of_input, of_output = (scale * np.mean(np.abs(x) ** 2, axis=0) for x in (below, above))
     with np.errstate(all="ignore"):
         coherence = np.abs(cross) ** 2 / (of_input * of_output)
         response = cross / of_input if how.estimator == "h1" else of_output / np.conj(cross)
     kept = (of_input > EXCITED**2 * of_input.max()) & (frequency > 0) & (frequency < 0.45 / channel.step_s)
-    count = 1 + (n - length) // (length - given["noverlap"])
+    count = above.shape[0]
     # Segments of a Hann window that overlap by half are as good as so many independent ones (Welch 1967).
     averages = count / (1 + (count > 1) * 2 * (count - 1) / count / 36) if is_hann else count
     name = "Hann window, half an overlap" if is_hann else "no window"
     long = f"{length * channel.step_s:.6g} s"
     said = f"Welch's method, {how.estimator.upper()}: {count} segments of {long}, {name}"
     if channel.u is channel.y:
-        size = np.sqrt(of_output)
-        response, coherence = size * np.exp(1j * minimum_phase(frequency, size)), None
+        size = np.asarray(np.sqrt(of_output), np.float64)
+        response, coherence = size * np.exp(1j * minimum_phase(np.asarray(frequency, np.float64), size)), None
         said = (
             "no input, and the output does not die away: taken as driven by white noise, its magnitude by "
             f"{said}; poles are those of the system, gain and zeros those of this output alone"
@@ -425,6 +422,12 @@ def _by_segments(channel: _Channel, how: Estimate) -> _Estimated:
     window = "hann" if is_hann else ""
     shares = None if coherence is None else coherence[kept]
     return frequency[kept], response[kept], shares, float(averages), window, said
+
+
+def _segments(values: Real, length: int, overlap: int, weights: Real) -> Complex:
+    """Return the spectra of parts of a signal, a row each, without their means."""
+    parts = np.lib.stride_tricks.sliding_window_view(values, length)[:: length - overlap]
+    return np.fft.rfft((parts - parts.mean(axis=1, keepdims=True)) * weights, axis=1)
 
 
 def _decay(values: Real, step_s: float) -> tuple[npt.NDArray[Any], Complex, Real | None, str]:

@@ -87,12 +87,12 @@ def of_input(random, source, n, step, f):
     return np.cos(turns).sum(axis=1)
 
 
-def closed_loop(random, modes, n, step):
-    """Return input and output of a loop: a held input less a share of the last output, noise included."""
+def closed_loop(random, modes, n, step, share=0.5):
+    """Return input and output of a loop with this share of noise, whose gain keeps it stable."""
     gain = 0.8 / sum(abs(b0) / omega**2 / (2 * zeta) for omega, zeta, b0, _ in modes)  # stable: small gain
     plants = [stepped(omega, zeta, step, False, 0.0) for omega, zeta, *_ in modes]
     u, y, states = random.standard_normal(n), np.zeros(n), [np.zeros(2) for _ in modes]
-    size = 1.5 * np.std(response(modes, u, step, False))
+    size = share * np.std(response(modes, u, step, False))
     noise = lfilter([1], [1, -random.uniform(0, 0.8)], size * random.standard_normal(n))
     for k in range(n):
         y[k] = noise[k] + sum(b0 * x[0] + b1 * x[1] for x, (_, _, b0, b1) in zip(states, modes, strict=True))

@@ -5,7 +5,7 @@ import pytest
 
 import symflex
 from symflex.errors import DataError
-from tests.unit.data.records import KINDS, record, response, study, written
+from tests.unit.data.records import KINDS, closed_loop, record, response, study, written
 
 MODE = (2 * np.pi * 10, 0.02, (2 * np.pi * 10) ** 2, 0.0)
 STEP = 0.005
@@ -101,9 +101,10 @@ def test_a_steady_sine_says_that_one_frequency_gives_one_value(tmp_path):
 
 
 def test_a_closed_loop_is_said(tmp_path):
-    t, u, y, _ = record("closed loop", 1)
-    written(tmp_path / "record.csv", t, u, y)
-    assert "closed loop" in str(symflex.fit(tmp_path / "record.csv"))
+    u, y = closed_loop(np.random.default_rng(7), [MODE], 2000, STEP, share=3.0)
+    fit = fitted(tmp_path, u, y)
+    assert "the record is of a closed loop" in " ".join(fit.warnings)
+    assert max(deviations(fit)) < 4
 
 
 def test_outputs_of_one_record_share_their_poles(tmp_path):
