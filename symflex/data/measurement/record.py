@@ -64,13 +64,14 @@ MOST_CHANNELS: Final = 64  # columns of a matrix that are channels
 SAME: Final = 1 - 1e-12  # correlation from which a channel is a multiple of another
 
 _INPUT = re.compile(
-    r"(?:v\(\w*in\w*\)|f_\d+n?[rxyz]*)|"
+    r"(?:v\(\w*in\w*\)|\w+ ?\(in\)|f_\d+n?[rxyz]*)|"
     r"(?:u|u_?est|u_?val|v_?in|u_?in|in|inp|f|exc|stim|ref|r|cmd|dac|pwm|duty)(?:[ _]?\d+)?|"
     r"(?:\w+[ _])?(?:input|eingang|entr[eé]e|force|kraft|hammer|impact|excitation|anregung|drive|actuator|"
     r"stimulus|reference|command|cmd|desired|target|set[ _]?point|torque|moment|effort|throttle|esc)"
     r"(?:[ _]?\w+)?",
     re.I,
 )
+_COMMAND = re.compile(r"(?:\w+[ _])?(?:esc|throttle|pwm|duty)", re.I)
 _MARKER = re.compile(r"(?:\w+[ _])?(?:trigger|trig|tacho\w*|keyphasor|marker|event|gate)(?:[ _]?\w+)?", re.I)
 """Names of channels that say when something happens, and are neither input nor output."""
 _CLOCK = re.compile(
@@ -423,6 +424,10 @@ def _in_si(
     """Return channels in SI by their names, the units in a row below, and comments above."""
     style = next((m[1] for cell in cells if (m := _OF_TIME.fullmatch(bare(cell)))), "")
     parts = [_with_unit(cell, style) for cell in cells]
+    if "out" in {unit.lower() for _, unit in parts}:  # ``(in)`` beside it is no inch
+        parts = [
+            (bare(c), "") if p[1].lower() in ("in", "out") else p for c, p in zip(cells, parts, strict=True)
+        ]
     comments = (line.strip() for line in head if line.lstrip().startswith(COMMENTS))
     fields = [match for line in comments if (match := _SAID.fullmatch(line))]
     by_name = {(m["of"] or "").strip(" '\"[]()").lower(): m["unit"].strip() for m in fields}
@@ -701,6 +706,7 @@ def _sorted(
         if cut_off := _cut_off(values):
             guesses.append(f"'{channel[:30]}' stays at {cut_off:.4g} for several samples: is it saturated?")
     named = [c for c, _ in channels if _INPUT.fullmatch(c)]
+    named = sorted(named, key=lambda c: not _COMMAND.match(c))  # beside one, a torque is measured
     [(alike, many)] = Counter(_ALIKE.sub("", c).lower() for c, _ in channels).most_common(1)
     if named:
         source = named[0]
