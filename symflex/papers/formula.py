@@ -855,7 +855,8 @@ class _LatexReader:
             if self.text == "^" and self.choose(at, 2):
                 return self.expression_of(self.powers(value, at))
             is_plain = isinstance(value, Sum) and any(isinstance(_unsigned(t), Number) for t in value.terms)
-            if self.continues() and is_plain and name != "exp" and self.choose(at, 2):
+            is_apart = self.at < len(self.tokens) and self.tokens[self.at].is_spaced
+            if self.continues() and is_plain and not is_apart and name != "exp" and self.choose(at, 2):
                 return self.expression_of(_product(value, self.operand(), self.span(at), self))
             return value
         if (

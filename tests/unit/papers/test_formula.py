@@ -3,12 +3,26 @@
 from __future__ import annotations
 
 from math import isclose
+from random import Random
 
 import pytest
 
 from symflex.errors import SpecError, Text
-from symflex.expressions import Expression, format_expression, parse
+from symflex.expressions import (
+    Call,
+    Expression,
+    Name,
+    format_expression,
+    number,
+    parse,
+    power,
+    product_of,
+    quotient,
+    sum_of,
+)
 from symflex.papers.formula import PrintedSymbol, evaluated, notation_of, read_latex, symbol_of_latex
+from symflex.print.label import labels_of
+from symflex.print.latex import latex_expression
 
 # LaTeX, the names that are known, the same formula in the grammar of specifications.
 READ = (
@@ -62,6 +76,39 @@ def test_printed_formulas_are_read_as_a_person_reads_them() -> None:
         found, expected = (evaluated(e) for e in (read(latex, known), parse(Text.alone("own", reading))))
         if not isclose(abs(found - expected), 0, abs_tol=1e-9 * abs(expected)):
             wrong.append((latex, format_expression(read(latex, known))))
+    assert wrong == []
+
+
+def test_what_symflex_prints_in_latex_is_read_back() -> None:
+    names = ["m_1", "EI", "omega_n", "k_eff", "l", "theta", "s"]
+    labels = labels_of([(n, "") for n in names[:-1]], {"s": "s"})
+    draw = Random(3)
+
+    def tree(depth: int) -> Expression:
+        if not depth or draw.random() < 0.2:
+            return Name(draw.choice(names)) if draw.random() < 0.8 else number(draw.randint(1, 9))
+        parts = [tree(depth - 1) for _ in range(2)]
+        function = draw.choice(["sqrt", "exp", "sin", "cosh"])
+        shapes = (
+            sum_of(parts),
+            product_of(parts),
+            quotient(*parts),
+            power(parts[0], 3),
+            Call(function, parts[0]),
+        )
+        return draw.choice(shapes)
+
+    wrong = []
+    for expression in (tree(3) for _ in range(150)):
+        latex = latex_expression(expression, labels)
+        try:
+            back, _ = read_latex(Text.alone("printed.tex", latex), notation_of(list(labels.items())))
+        except SpecError as error:
+            assert "two ways" in str(error)
+            continue
+        first, second = evaluated(expression), evaluated(back)
+        if not isclose(abs(first - second), 0, abs_tol=1e-9 * abs(first)):
+            wrong.append((latex, format_expression(back)))
     assert wrong == []
 
 
