@@ -44,6 +44,7 @@ from symflex.expressions import (
     nodes,
     number,
     parse,
+    power,
     product_of,
     substitute,
     sum_of,
@@ -244,7 +245,24 @@ def read_latex(text: Text, notation: PaperNotation) -> tuple[Expression, Lines]:
     for other in others:
         if defined_symbol(other) is None:
             raise refusal(other.span, "this is more than one formula", "give one formula")
-    return read_formula(first.sides[-1], more, laplace=laplace_of(first, notation)), lines
+    formula = read_formula(first.sides[-1], more, laplace=laplace_of(first, notation))
+    (whole, *values), _ = in_laplace([formula, *(line for _, line in lines)], more)
+    return whole, tuple((name, line) for (name, _), line in zip(lines, values, strict=True))
+
+
+def in_laplace(expressions: Sequence[Expression], notation: PaperNotation) -> tuple[list[Expression], str]:
+    """Return expressions in s, and what is s: p, D, or a frequency, if that is all that has no meaning."""
+    used = {n.name for e in expressions for n in names(e) if isinstance(n, Name)}
+    known = {*notation.names.values(), "pi"}
+    if LAPLACE not in used and used & known and used - known in ({"p"}, {"D"}):
+        (name,) = used - known
+        return [substitute(e, {name: Name(LAPLACE)}) for e in expressions], name
+    if LAPLACE not in used and used & known and used - known in ({"omega"}, {"Omega"}):
+        (name,) = used - known
+        turned = [_turned(e, "j", name) for e in expressions]  # -omega^2 is s^2
+        if all(found is not None and not found[1] for found in turned):
+            return [found[0] for found in turned if found is not None], name
+    return list(expressions), LAPLACE
 
 
 def defined_symbol(statement: PrintedEquation) -> tuple[PrintedSymbol, PrintedEquation] | None:
@@ -1646,11 +1664,11 @@ def _in_s(expression: Expression, notation: PaperNotation, span: Span) -> Expres
 
 
 def _turned(node: Expression, unit: str, frequency: str) -> tuple[Expression, int] | None:
-    """Return an expression with ``frequency = s/unit``, and the power of the unit in front, 0 or 1."""
+    """Return an expression with ``frequency = s/unit``, and the turns of the unit in front, 0 or 1."""
 
-    def times(factor: Expression, power: int) -> tuple[Expression, int]:
-        power %= 4
-        return (negative(factor), power - 2) if power > 1 else (factor, power)
+    def times(factor: Expression, turns: int) -> tuple[Expression, int]:
+        turns %= 4
+        return (negative(factor), turns - 2) if turns > 1 else (factor, turns)
 
     match node:
         case Name(name):
@@ -1671,11 +1689,11 @@ def _turned(node: Expression, unit: str, frequency: str) -> tuple[Expression, in
             if None in parts:
                 return None
             whole = [p for p in parts if p is not None]
-            power = sum(p[1] for p in whole)
+            turns = sum(p[1] for p in whole)
             kept = [p[0] for p in whole if not is_number(p[0], 1)] or [Number(Fraction(1))]
             signs = sum(isinstance(k, Negative) for k in kept)
             product = _times([_unsigned(k) for k in kept], node.span)
-            return times(negative(product) if signs % 2 else product, power)
+            return times(negative(product) if signs % 2 else product, turns)
         case Quotient(above, below):
             pair = _turned(above, unit, frequency), _turned(below, unit, frequency)
             if pair[0] is None or pair[1] is None:
@@ -1683,15 +1701,28 @@ def _turned(node: Expression, unit: str, frequency: str) -> tuple[Expression, in
             return times(Quotient(pair[0][0], pair[1][0], span=node.span), pair[0][1] - pair[1][1])
         case Power(base, exponent):
             inner = _turned(base, unit, frequency)
-            if inner is None or not isinstance(_unsigned(exponent), Number):
+            size = _rational(exponent)
+            if inner is None or size is None:
                 return inner if inner is not None and inner[0] == base and not inner[1] else None
-            size = _unsigned(exponent).value * (-1 if isinstance(exponent, Negative) else 1)  # type: ignore[attr-defined]
-            if size.denominator != 1:
+            if size.denominator != 1 or is_number(inner[0], 0):
                 return None if inner[1] else (Power(inner[0], exponent, span=node.span), 0)
-            return times(Power(inner[0], exponent, span=node.span), inner[1] * int(size))
+            return times(power(inner[0], exponent), inner[1] * int(size))
         case Call(name, argument):
             inner = _turned(argument, unit, frequency)
             if inner is None or inner[1]:
                 return None
             return Call(name, inner[0], span=node.span), 0
     return node, 0
+
+
+def _rational(exponent: Expression) -> Fraction | None:
+    """Return the value of an exponent such as -1/2, ``None`` if it has names or is no quotient."""
+    match exponent:
+        case Number(value):
+            return value
+        case Negative(operand):
+            inner = _rational(operand)
+            return None if inner is None else -inner
+        case Quotient(Number(above), Number(below)):
+            return above / below if below else None
+    return None

@@ -58,6 +58,7 @@ from symflex.papers.formula import (
     PrintedSymbol,
     defined_symbol,
     definition,
+    in_laplace,
     laplace_of,
     read_formula,
 )
@@ -222,7 +223,8 @@ class _Court:
             raise _Unjudged("not read", f"it has more than {MOST_SIDES} sides")
         notation = self.notation(model)
         laplace = laplace_of(equation, notation)
-        sides = [read_formula(side, notation, laplace=laplace) for side in equation.sides]
+        read = [read_formula(side, notation, laplace=laplace) for side in equation.sides]
+        sides, _ = in_laplace(read, notation)
         defined = {s.name for s, e in self.definitions.items() if e is equation}
         claims = list(_claims(sides, model, {*notation.names.values()} - defined))
         if not claims:

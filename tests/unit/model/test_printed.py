@@ -104,3 +104,15 @@ def test_a_symbol_without_a_meaning_is_named_with_what_fits_its_place():
 def test_a_formula_is_given_once():
     with pytest.raises(SpecError, match="both 'expr' and 'latex'"):
         load_model(Source("spec.toml", f"{MODEL}expr = '1'\nlatex = '1'\n"))
+
+
+def test_p_and_d_are_the_laplace_variable_where_nothing_else_is_left():
+    for latex in (
+        r"\frac{1}{mp^2 + k}",
+        r"\frac{X}{F} = \frac{1}{mD^2 + k}",
+        r"\frac{1}{k - m\omega^2}",
+    ):
+        (published,) = with_latex(latex).published
+        assert "s^2" in format_expression(published.expression)
+    with pytest.raises(SpecError, match="unknown name 'p'"):
+        with_latex(r"\frac{p}{ms^2 + k}")

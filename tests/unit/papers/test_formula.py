@@ -46,6 +46,8 @@ READ = (
     (r"H(i\omega) = \frac{1}{m(\omega_0^2 - \omega^2 + 2i\beta\omega)}", "",
      "1/(m*(omega_0^2+s^2+2*beta*s))"),
     (r"-\frac j{\omega C}", "", "1/(s*C)"),
+    (r"\cosh\left(\sqrt[4]{\frac{m\omega^2}{k}}\right) + e^{-j\omega T}", "m k T",
+     "cosh((-m*s^2/k)^(1/4))+exp(-s*T)"),
     (r"H(p)=\dfrac{K}{1+2\xi p/\omega_0+p^2/\omega_0^2}.", "", "K/(1+2*xi*s/omega_0+s^2/omega_0^2)"),
     (r"K_p \cdot \left(1 + \frac{1}{T_i s} + T_d s\right)", "", "K_p*(1+1/(T_i*s)+T_d*s)"),
     (r"M\bigg[\frac{p}{s+p}\bigg]e^{-\Delta Ts}", "", "M*p/(s+p)*exp(-Delta*T*s)"),
