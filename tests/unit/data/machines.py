@@ -91,7 +91,7 @@ def rod(s, p):
 
 
 def oven(s, p):
-    """A lag with a dead time."""
+    """A lag with a delay."""
     return p["K"] * np.exp(-p["T_d"] * s) / (1 + p["T"] * s)
 
 
