@@ -346,14 +346,21 @@ def _kind(reader: Reader, table: TableValue, entry: KeyValue, what: str) -> str:
 
 def read_notation(reader: Reader, section: TableValue | None, model: Model) -> tuple[tuple[str, str], ...]:
     """Return the symbols of a paper, as they are typed in LaTeX, with the names they have in the model."""
+    if section is None:
+        return ()
+    from symflex.papers.formula import symbol_of_latex  # few specifications hold LaTeX
+
     tied: list[tuple[str, str]] = []
     known = {LAPLACE, "pi", *(name for name, _ in labelled_names(model))}
-    for entry in section.entries if section else ():
+    for entry in section.entries:
         text = reader.string(entry, f"'{entry.key[:80]}' of [notation]")
         if text is not None and text.value not in known:
             close = nearest(text.value, known) if len(known) <= COMPARED_NAMES else None
             hint = close or "write a parameter, a definition, an input, an output or s"
             reader.note("SF210", f"unknown name '{text.value[:64]}' in [notation]", text.span, hint)
+        elif text is not None and symbol_of_latex(Text.alone("<symbol>", entry.key)) is None:
+            hint = r"give one symbol, such as \hat{x}_1 or M_{\mathrm{eff}}"
+            reader.note("SF115", f"'{entry.key[:64]}' in [notation] is no symbol", entry.key_span, hint)
         elif text is not None:
             tied.append((entry.key, text.value))
     return tuple(tied)

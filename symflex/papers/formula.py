@@ -159,8 +159,6 @@ class PaperNotation:
 
     names: Mapping[PrintedSymbol, str] = field(default_factory=dict)
     signals: frozenset[str] = frozenset()  # those of them that vary: outputs, inputs, unknowns
-    # Whether an expression has no unit; ``None`` where that is not known.
-    is_number: Callable[[Expression], bool | None] = lambda _: None
     # What dots and primes mean: nothing, derivatives in time, or derivatives in time and along x.
     motion: Literal["", "time", "field"] = ""
 
@@ -903,7 +901,7 @@ class _LatexReader:
     def continues(self) -> bool:
         """Tell whether a symbol, fraction or root follows that an argument might go on with."""
         text = self.text
-        if text in DOTS or (text in ACCENTED and ACCENTED[text] in DOTS):
+        if ACCENTED.get(text) in DOTS:
             return False
         if text in FONTS and self.function_name()[0] is not None:
             return False
@@ -920,6 +918,12 @@ class _LatexReader:
         )
 
     def bare_argument(self, name: str, at: int) -> Expression:
+        r"""Return an argument without brackets.
+
+        It goes on over the symbols that follow, as in ``\sin \lambda l``. Two are one argument, unless
+        the first is an angle by its letter, the second is s or a power, or a space, a fraction or a brace
+        stands between them; then, and of more than two, any number of them may be.
+        """
         parts: list[Expression] = []
         ends: list[int] = []
         doubtful = False
@@ -955,11 +959,7 @@ class _LatexReader:
                 and first_name.name.split("_")[0] in ANGLES
                 and name in ("sin", "cos", "tan", "cot", "sec", "csc")
             )
-            fits = [m for m in (whole, *sizes) if self.notation.is_number(_times(parts[:m])) is True]
-            open_too = [m for m in (whole, *sizes) if self.notation.is_number(_times(parts[:m])) is None]
-            if len(fits) == 1 and not open_too:
-                whole = fits[0]
-            elif doubtful or len(named) > 2 or is_laplace or is_angle or isinstance(last, Power):  # noqa: PLR2004
+            if doubtful or len(named) > 2 or is_laplace or is_angle or isinstance(last, Power):  # noqa: PLR2004
                 readings = (whole, *sizes)
                 whole = readings[self.choose(at, len(readings))]
         self.at = ends[whole - 1]
@@ -1240,7 +1240,7 @@ class _LatexReader:
                 out += "p"
             elif text in ("*", r"\ast", r"\star"):
                 out += "star"
-            elif text in ("+",):
+            elif text == "+":
                 out += "plus"
             elif text == r"\infty":
                 out += "inf"
@@ -1262,7 +1262,7 @@ class _LatexReader:
     @staticmethod
     def is_index(texts: Sequence[str], letter: str) -> bool:
         """Tell whether a letter of a subscript is the index of a product: alone, or at its end."""
-        letters = [t for t in texts if t not in (",",)]
+        letters = [t for t in texts if t != ","]
         return len(letters) <= 2 or letters[-1] == letter or letters[0] == letter  # noqa: PLR2004
 
     def named(self, symbol: PrintedSymbol, span: Span, start: int) -> Expression:

@@ -90,6 +90,8 @@ def test_notation_ties_symbols_of_a_paper():
     assert format_expression(published.expression) == "1/(m*s^2 + k)"
     with pytest.raises(SpecError, match=r"unknown name 'kk' in \[notation\]"):
         with_latex("1", 'M = "kk"')
+    with pytest.raises(SpecError, match=r"'a\+b' in \[notation\] is no symbol"):
+        with_latex("1", '"a+b" = "k"')
 
 
 def test_a_symbol_without_a_meaning_is_named_with_what_fits_its_place():
