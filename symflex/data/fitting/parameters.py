@@ -759,7 +759,7 @@ class _RecordRest(_MachineRest):
         self._finer: dict[int, int] = {}
 
     def pulse(self, record: _Record, theta: Real) -> PulseResponse:
-        """Return the response to one sample of an input; FitError SF619 for a function that has none."""
+        """Return the response to one sample of an input; no numbers where the function has none."""
         machine, samples = self.machine, record.samples
         function, count = machine.functions[record.response], samples.output.size
         if function.coefficients is not None:
@@ -781,8 +781,8 @@ class _RecordRest(_MachineRest):
                 self._finer[record.response] = terms_for(response, count)
             made = response(self._finer[record.response])
         if made is None:
-            message = f"{function.name} does not fall towards high frequencies: it has no response in time"
-            raise FitError(Diagnostic("SF619", message, None, "fit its frequency response: --segments 8"))
+            nothing = np.full(count, np.nan)
+            made = PulseResponse(nothing, np.full((count, theta.size), np.nan), np.zeros((count, 0)))
         return made
 
     def model(self, record: _Record, theta: Real) -> tuple[Real, Real, Real]:
@@ -854,6 +854,11 @@ def _fit_records(measured: Sequence[MeasuredResponse], begun: ParameterFit, hold
                 chosen = score, x, records
     assert chosen is not None  # there are beginnings
     _, x, records = chosen
+    for record in records:
+        if not np.isfinite(_RecordRest(machine, records).pulse(record, machine.theta(x)).values).all():
+            name = machine.functions[record.response].name
+            message = f"{name} does not fall towards high frequencies: it has no response in time"
+            raise FitError(Diagnostic("SF619", message, None, "fit its frequency response: --segments 8"))
     if all(function.coefficients is not None for function in machine.functions):
         x = _best_of_random(_RecordRest(machine, records), x, starts)
     for _ in range(COLOURED):
