@@ -46,7 +46,8 @@ SKIPPED: Final = commands(
     "left right middle big Big bigg Bigg bigl bigr Bigl Bigr biggl biggr Biggl Biggr bigm displaystyle "
     "textstyle scriptstyle scriptscriptstyle limits nolimits nonumber notag mathstrut strut allowbreak relax "
     "null centering hfill hfil noindent hline mathord mathbin mathrel mathopen mathclose mathinner protect "
-    "nobreak par boxed ensuremath mathclap fbox smash small large therefore because"
+    "nobreak par boxed ensuremath mathclap fbox smash small large therefore because "
+    "IEEEyesnumber IEEEnonumber IEEEeqnarraynumspace"
 ) | {"\\/", "\\-"}
 SPACES: Final = commands(", ; : ! > thinspace medspace enspace space negthinspace") | {"\\ ", "~"}
 WIDE: Final = commands("quad qquad")
@@ -209,7 +210,7 @@ def statements(tokens: Sequence[LatexToken]) -> tuple[PrintedEquation, ...]:
             elif token.text != ":" or text_of(trimmed[i + 1 : i + 2]) != "=":
                 sides[-1].append(token)
         kept = tuple(tuple(side) for side in sides if side)
-        if kept:
+        if any(t.text not in CLOSERS for side in kept for t in side):  # as of \right\} behind rows
             found.append(PrintedEquation(kept, is_condition or is_ordered, nearly))
     return tuple(found)
 
@@ -224,6 +225,8 @@ def prepared(tokens: Sequence[LatexToken], depth: int = 0) -> list[LatexToken]:
         token = tokens[i]
         text = token.text
         i += 1
+        if text in (r"\eqno", r"\leqno"):
+            break  # the number of the equation follows
         if text in SPACES:
             is_spaced = text not in (r"\!", r"\negthinspace")
         elif text in SKIPPED:
@@ -688,6 +691,8 @@ class _PaperScanner:
 
     def add(self, start: int, end: int, *, is_inline: bool = False, name: str = "") -> None:
         """Take mathematics."""
+        if name in WITH_COLUMNS and (columns := re.compile(r"\s*\{[^{}]*\}").match(self.value, start, end)):
+            start = columns.end()
         inner = self.value[start:end]
         if is_inline and "=" not in inner and r"\equiv" not in inner:
             return

@@ -45,6 +45,30 @@ def test_a_paper_is_cut_into_equations_with_macros_replaced() -> None:
     ]
 
 
+FORMS = (
+    (r"\begin{eqnarray} G &=& a \nonumber \\ &=& c, \label{x} \end{eqnarray}", [["G", "a", "c"]]),
+    (
+        r"\begin{equation}\begin{array}{rcl} x &=& a \\ y &=& c \end{array}\end{equation}",
+        [["x", "a"], ["y", "c"]],
+    ),
+    (r"\[ G = a, \quad\text{with}\quad a = c \text{ and } b = d \]", [["G", "a"], ["a", "c"], ["b", "d"]]),
+    (r"\begin{align} x &= a \\ \intertext{where} a &= b \end{align}", [["x", "a"], ["a", "b"]]),
+    (r"\begin{alignat}{2} x &= a &\quad y &= b \end{alignat}", [["x", "a"], ["y", "b"]]),
+    (r"\begin{split} G &= a\,\Bigl[ b \\ &\quad + c \Bigr] \end{split}", [["G", "a[b+c]"]]),
+    (r"\begin{IEEEeqnarray}{rCl} a & = & b \IEEEyesnumber \end{IEEEeqnarray}", [["a", "b"]]),
+    (r"$$ a = b \eqno(3) $$", [["a", "b"]]),
+    (r"\[ \left. \begin{aligned} a &= b \\ c &= d \end{aligned} \right\} \]", [["a", "b"], ["c", "d"]]),
+    (r"\[ a = b \quad \Rightarrow \quad c = d \]", [["a", "b"], ["c", "d"]]),
+    (r"\[ a = b \qquad (7) \]", [["a", "b"]]),
+)
+
+
+def test_authors_lay_out_equations_in_many_ways() -> None:
+    for latex, expected in FORMS:
+        shown = latex if not latex.startswith(r"\begin{split}") else rf"\[ {latex} \]"
+        assert sides(read_text(Text.alone("paper.tex", shown))) == expected
+
+
 def test_labels_and_tags_are_kept_with_their_places() -> None:
     paper = read_text(Text.alone("paper.tex", PAPER))
     names = [[name for _, name in d.labels] for d in paper.displays]
