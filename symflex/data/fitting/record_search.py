@@ -294,7 +294,7 @@ class RecordSearch:
         ):
             for changed in change(state):
                 other = changed.refined(*ROUGH)
-                if change == self._with_hold:  # a wrong hold has poles that make up for it
+                if change in (self._with_hold, self._with_delay):  # poles may make up for a wrong one
                     other = self._shrunk(other)
                 if other.score < state.score - GAIN:
                     state = other

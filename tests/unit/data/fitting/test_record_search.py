@@ -63,6 +63,19 @@ def test_hum_is_named_and_is_no_mode(tmp_path):
     assert fit.to_json_dict()["record"]["sines"][0]["mains"] == "mains of 50 Hz"
 
 
+def test_a_delay_of_part_of_a_sample_is_not_made_of_a_fast_pole(tmp_path):
+    # The speed of a motor: 19 (1 - exp(-(t - t_0)/tau)) times 6 V, 1.7 ms after the sample of the step.
+    random, t = np.random.default_rng(4), 0.01 * np.arange(198)
+    u = np.where(t >= 0.05, 6.0, 0.0)
+    y = 19 * 6 * (1 - np.exp(-np.maximum(t - 0.0517, 0) / 0.136)) + 0.05 * random.standard_normal(t.size)
+    written(tmp_path / "record.csv", t, u, y)
+    fit = symflex.fit(tmp_path / "record.csv")
+    assert not fit.poor
+    found = fit.resonances
+    assert found.real_p == pytest.approx([1 / 0.136], rel=5e-3)
+    assert found.delay == pytest.approx([1.7e-3], abs=2e-4)
+
+
 def test_offset_drift_and_delay_are_said_as_they_are(tmp_path):
     _, u, y = of_mode(2, is_joined=True, delay=0.0137)
     fit = fitted(tmp_path, u, y + 3 + 2 * STEP * np.arange(u.size), hold="joined", delay=True)
