@@ -564,8 +564,10 @@ class _LatexReader:
                     before = self.tokens[self.at - 1].text
                     message = f"the number after '{before}' could be a factor, an index or a power"
                     self.refuse(message, "write it in front, as x_2 or as x^2")
-                if text in FONTS and isinstance(value, Expression) and not names(value) and self.is_unit():
-                    self.refuse("what follows this number may be a unit or a factor")
+                is_bare = isinstance(value, Expression) and not names(value)
+                is_apart = self.tokens[self.at].is_spaced or text in (r"\text", r"\textrm", r"\mbox")
+                if text in FONTS and (is_bare or is_apart) and self.is_unit(any_name=is_bare):
+                    self.refuse("what follows this may be a unit or a factor")
                 value = _product(value, self.operand(), self.span(start), self)
             else:
                 break
@@ -573,11 +575,12 @@ class _LatexReader:
             self.built.update(dict.fromkeys(set(self.open) - opened, value))
         return value
 
-    def is_unit(self) -> bool:
-        """Tell whether upright letters are the symbol of a unit, and no function or power of e."""
+    def is_unit(self, *, any_name: bool) -> bool:
+        """Tell whether upright letters are the symbol of a unit, or only of seconds, and no function."""
         end = group_end(self.tokens, self.at + 1)
         word = text_of(t for t in self.tokens[self.at + 1 : end] if t.text not in "{}")
-        return word not in IMAGINARY and unit_named(word) is not None and not self.upright_base()
+        is_one = word == LAPLACE or (any_name and unit_named(word) is not None)
+        return word not in IMAGINARY and is_one and not self.upright_base()
 
     def signed_operand(self) -> Value:
         if self.text == "-":
@@ -746,7 +749,7 @@ class _LatexReader:
             self.refuse("this comma may be a decimal comma or separate two numbers", "a decimal comma is {,}")
         if (
             self.text in ("e", "E")
-            and self.ahead().isdigit()
+            and (self.ahead().isdigit() or (self.ahead() in ("+", "-") and self.ahead(2).isdigit()))
             and not self.tokens[self.at].is_spaced
             and self.tokens[self.at].span.start == self.tokens[self.at - 1].span.end
         ):

@@ -384,14 +384,10 @@ class _Cutter:
             elif text in (r"\\", r"\cr"):
                 if not depth and self.begins_anew(i, is_one=text == r"\cr"):
                     self.begin()
-            elif (
-                self.joins(text, current)
-                and not depth
-                and (words := _words(tokens[i : group_end(tokens, i)]))
-            ):
+            elif not depth and (joined := self.words(i - 1)):
+                words, i = joined
                 goes_on = is_condition and words[0] in ("and", "or")
                 self.begin(is_condition=words[0] in CONDITIONS or goes_on)
-                i = group_end(tokens, i)
             elif text in WIDE and not depth:
                 i = self.after_wide_space(i)
             elif text in WIDE:
@@ -406,10 +402,33 @@ class _Cutter:
                 current.append(token)
         return self.found
 
-    @staticmethod
-    def joins(text: str, current: Sequence[LatexToken]) -> bool:
-        """Tell whether a text may join formulas, and is no script."""
-        return text in WORDY and not (current and current[-1].text in ("_", "^"))
+    def words(self, at: int) -> tuple[list[str], int] | None:
+        r"""Return words that join formulas, or remark on one, and where they end; ``None`` for a name.
+
+        ``\text{and}`` joins what is before it and behind it. At the end of a row, words after a space are a
+        remark, such as a unit. Everything else in letters is a name, so that nothing of a formula is lost.
+        """
+        tokens, current = self.tokens, self.found[-1][0]
+        begin = at + (tokens[at].text == "{" and text_of(tokens[at + 1 : at + 2]) in SWITCHES)
+        if tokens[begin].text not in WORDY | SWITCHES or (current and current[-1].text in ("_", "^")):
+            return None
+        end = group_end(tokens, at) if begin > at else group_end(tokens, begin + 1)
+        inner = [t for t in tokens[begin + 1 : end] if t.text not in "{}"]
+        written_as = written(inner)
+        words = re.sub(r"[^a-z ]", " ", (written_as or text_of(inner)).lower()).split()
+        if not inner:
+            return ["and"], end
+        follows = bool(self.rest(end))
+        if (
+            words
+            and len(words[0]) > 1
+            and words[0] in CONNECTIVES
+            and (follows or len(words) > 1 or not current)
+        ):
+            return words, end
+        source, start = inner[0].span.source.text, inner[0].span.start
+        is_apart = tokens[begin].is_spaced or source[start - 1 : start].isspace() or inner[0].text == "("
+        return (words, end) if len(words) > 1 and not follows and is_apart else None
 
     def rest(self, at: int) -> list[LatexToken]:
         """Return tokens up to the next row, comma, word or wide space."""
@@ -456,18 +475,6 @@ def _trimmed(piece: Sequence[LatexToken]) -> list[LatexToken]:
     while kept and (kept[0].text in (",", ";") or (kept[0].text == "." and not text_of(kept[1:2]).isdigit())):
         kept.pop(0)
     return kept
-
-
-def _words(group: Sequence[LatexToken]) -> list[str]:
-    """Return the words of a text that joins formulas, none for a name."""
-    inner = group[1:-1] if group and group[0].text == "{" else group
-    if not inner:
-        return ["and"]
-    first, last = inner[0].span, inner[-1].span
-    is_whole = first.source is last.source and first.start < last.end
-    written = first.source.text[first.start : last.end] if is_whole else text_of(inner)
-    words = re.sub(r"[^a-z ]", " ", written.lower()).split()
-    return words if len(words) > 1 or (words and words[0] in CONNECTIVES) else []
 
 
 # --- from a file to its displays ---

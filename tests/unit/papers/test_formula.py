@@ -145,6 +145,14 @@ def test_what_print_leaves_open_is_refused_with_its_place(latex: str) -> None:
     assert problem.span.source.name == "paper.tex"
 
 
+def test_words_in_a_formula_are_names_and_never_lost() -> None:
+    assert format_expression(read(r"G = \text{proportional gain}\cdot s")) == "proportionalgain*s"
+    assert format_expression(read(r"G = K\mathrm{a} s")) == "K*a*s"
+    assert format_expression(read(r"G = V\text{in}")) == "V*in"
+    assert format_expression(read(r"G = a \text{ (rad/s)}")) == "a"
+    assert format_expression(read(r"G = a\;{\rm where}\; a = b")) == "a"
+
+
 def test_both_readings_are_in_the_message() -> None:
     with pytest.raises(SpecError, match=r"two ways: 1/2\*k or 1/\(2\*k\)"):
         read("1/2k")
@@ -169,6 +177,8 @@ UNREAD = (
     (r"1,5", 3, "more than one formula"),
     (r"\omega^2 + j", 12, "does not vanish"),
     (r"\input{secrets}", 1, "not read here"),
+    (r"R\text{ s}", 2, "may be a unit"),
+    ("5e-3", 2, "may be a power of ten"),
 )
 
 
