@@ -242,7 +242,9 @@ def fit_resonances(
     if bases is not None and given.slope is not None:
         raise refused("a power of s is for fits without a base")
     if bases is None and _are_in_time(measured, given):
-        return _fit_in_time(measured, given)
+        in_time = _fit_in_time(measured, given)
+        if in_time is not None:
+            return in_time
     for response in measured:
         needed = max(FEWEST_LINES, 4 * (given.modes or 1) + 2)
         if response.values.size < needed:
@@ -329,13 +331,16 @@ def _are_in_time(measured: Sequence[MeasuredResponse], given: FitOptions) -> boo
     )
 
 
-def _fit_in_time(measured: Sequence[MeasuredResponse], given: FitOptions) -> ResonanceFit:
+def _fit_in_time(measured: Sequence[MeasuredResponse], given: FitOptions) -> ResonanceFit | None:
+    """Return the fit to records in time, None if no pole describes them: a gain is fitted to their lines."""
     settings = Settings(
         given.hold, given.criterion, given.modes, given.slope, given.is_delay_free, given.band
     )
     search = RecordSearch([one.samples for one in measured], settings)
     stages = Stages()
     problem, dynamics = stages.within(LAST_SHARE, search.found, search.best)
+    if not dynamics.order:
+        return None
     residues = Residues(problem, dynamics, given.slope)
     free = Free(gain=True, delay=dynamics.is_delay_free)
     resonances, covariance = residues.packed(free)
@@ -359,6 +364,10 @@ def _fit_in_time(measured: Sequence[MeasuredResponse], given: FitOptions) -> Res
     tests = tuple(judge_zeros(resonances.one(r), errors.one(r)) for r in range(len(bases)))
     fit = replace(fit, phase_tests=tests, warnings=(*record.warnings, *_warnings(fit)))
     reasons = ["the time budget ended before the fit was complete"] if stages.is_cut else []
+    if given.modes is not None and fit.modes.sum() != given.modes:
+        reasons.append(f"{given.modes} resonances were requested, and the best fit has {fit.modes.sum()}")
+    if residues.is_contradicted:
+        reasons.append(f"the record contradicts --slope {given.slope}: its static gain is not zero")
     return replace(fit, poor=(*reasons, *record.poor, *_poor(fit)))
 
 

@@ -244,6 +244,7 @@ class Residues:
         )
         if dynamics.omega.size + dynamics.real.size:
             self.middle = float(np.exp(np.mean(np.log([*dynamics.omega, *dynamics.real]))))
+        self.is_contradicted = False  # whether the data contradict the power of s that is asked for
         prices = np.log(problem.sizes)
         self.shapes = [self._shape(r, slope, price) for r, price in enumerate(prices)]
         if dynamics.is_delay_free and self.values[poles] ** 2 <= prices[0] * self.covariance[poles, poles]:
@@ -297,7 +298,10 @@ class Residues:
         low, high = 0, self.dynamics.order - (not self.dynamics.has_direct)
         most = 2 * (self.dynamics.omega.size + self.dynamics.real.size // 2) + 1
         while slope is not None and low < min(slope + zeros, high):
-            self._conditioned(response, low)
+            if self._is_nothing(response, low, price):
+                self._conditioned(response, low)
+            else:  # what the data contradict moves no pole
+                self.is_contradicted = True
             low += 1
         while high > low and (high - low > most or self._is_nothing(response, high, price)):
             self._conditioned(response, high)

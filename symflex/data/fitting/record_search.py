@@ -35,6 +35,7 @@ Records = Sequence[tuple[Samples, ...]]
 MOST_ORDER, MOST_ROWS, LONGEST = 10, 40, 6000  # poles, block rows and samples of the subspace method
 MOST_LINES = 3000  # of a record on which numbers of poles are compared
 MOST_REFINED = 4  # proposals that are refined
+MOST_BESIDE = 3  # the same where a number of modes is asked for
 MOST_ADDED = 12  # terms that a search adds at most
 TRIED = 2  # the likeliest of them, and the likeliest sine
 ROUGH, FIRST = (12, 1e-5), (25, 1e-6)  # steps and tolerance of a comparison, and of a start
@@ -229,8 +230,9 @@ class RecordSearch:
         """Return the state with terms added, and removed, as long as the criterion falls."""
         self.tried = {}
         self._note(state)
-        for step in range(MOST_ADDED):
-            entered_budget().progress.report(step / MOST_ADDED, f"{state.dynamics.order} poles")
+        most = MOST_ADDED if self.settings.modes is None else MOST_BESIDE
+        for step in range(most):
+            entered_budget().progress.report(step / most, f"{state.dynamics.order} poles")
             best = state
             for more in self._proposed(state):
                 grown = _State(0.0, state.problem, state.dynamics.with_terms(more)).refined(*ROUGH)

@@ -120,6 +120,19 @@ def test_a_closed_loop_is_said(tmp_path):
     assert max(deviations(fit)) < 4
 
 
+def test_a_power_of_s_that_the_record_contradicts_is_said_and_moves_no_pole(tmp_path):
+    _, u, y = of_mode(8)
+    fit = fitted(tmp_path, u, y, slope=1)
+    assert fit.poor[0] == "the record contradicts --slope 1: its static gain is not zero"
+    assert max(deviations(fit)) < 4
+
+
+def test_a_record_without_a_pole_is_a_gain(tmp_path):
+    random, u, _ = of_mode(9)
+    fit = fitted(tmp_path, u, 2 * u + 0.01 * random.standard_normal(u.size))
+    assert fit.found.modes.sum() == 0 and abs(fit.resonances.gain[0] - 2) < 0.01
+
+
 def test_outputs_of_one_record_share_their_poles(tmp_path):
     random, u, y = of_mode(6)
     other = response([(*MODE[:2], 0.0, MODE[0])], u, STEP, False) + 0.01 * random.standard_normal(u.size)
