@@ -243,6 +243,10 @@ def fit_resonances(
         raise refused("a power of s is for fits without a base")
     if bases is None and _are_in_time(measured, given):
         in_time = _fit_in_time(measured, given)
+        if in_time is not None and in_time.record and in_time.record.poor and _are_many(measured):
+            # What an input does between its samples does not enter a response that is a mean of many.
+            of_lines = fit_resonances([replace(one, samples=()) for one in measured], None, given)
+            return in_time if of_lines.poor else of_lines
         if in_time is not None:
             return in_time
     for response in measured:
@@ -317,6 +321,11 @@ def _fit(
             for test in tests
         )
     return replace(fit, phase_tests=tests, warnings=(*doubts, *_warnings(fit)), poor=reasons)
+
+
+def _are_many(measured: Sequence[MeasuredResponse]) -> bool:
+    """Tell whether responses are means that have lines enough to be fitted instead of the records."""
+    return all(one.averages and one.values.size >= FEWEST_JUDGED for one in measured)
 
 
 def _are_in_time(measured: Sequence[MeasuredResponse], given: FitOptions) -> bool:
