@@ -167,7 +167,11 @@ def _estimate(given: FitOptions | MeasureOptions) -> Estimate:
 
 
 def _read(given: FitOptions) -> list[MeasuredResponse]:
-    """Return the responses of all files, and print what was guessed of each."""
+    """Return the responses of all files, and print what was guessed of each.
+
+    How the frequency response of a record was estimated is no matter to a fit in time.
+    """
+    from symflex.data.fitting import are_in_time
     from symflex.data.measurement import read_measurement, read_records
 
     read: list[MeasuredResponse] = []
@@ -181,8 +185,11 @@ def _read(given: FitOptions) -> list[MeasuredResponse]:
             responses = read_records(given.records, given.columns, _estimate(given))
         else:
             responses = read_measurement(str(path), given.columns, _estimate(given), axis)
+        is_in_time = given.base is None and are_in_time(responses, given)
+        said = {note for one in responses for note in one.notes} if is_in_time else set[str]()
         for guess in dict.fromkeys(guess for one in responses for guess in one.guesses):
-            note(f"{path}: {guess}")
+            if guess not in said:
+                note(f"{path}: {guess}")
         read += responses
     return read
 

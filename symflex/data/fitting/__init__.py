@@ -1,6 +1,6 @@
 """Fitting resonances to measured frequency responses, with standard errors and the paper's phase test."""
 
-from symflex.data.fitting.fit import Base, ResonanceFit, fit_resonances
+from symflex.data.fitting.fit import Base, ResonanceFit, are_in_time, fit_resonances
 from symflex.data.fitting.minimum_phase import PhaseTest
 from symflex.data.fitting.mode_shapes import FittedModeShapes, mode_shapes
 from symflex.data.fitting.order import STARTS

@@ -241,7 +241,7 @@ def fit_resonances(
             raise no_such(what, name, allowed, "choose from")
     if bases is not None and given.slope is not None:
         raise refused("a power of s is for fits without a base")
-    if bases is None and _are_in_time(measured, given):
+    if bases is None and are_in_time(measured, given):
         in_time = _fit_in_time(measured, given)
         if in_time is not None and in_time.record and in_time.record.poor and _are_many(measured):
             # What an input does between its samples does not enter a response that is a mean of many.
@@ -328,7 +328,7 @@ def _are_many(measured: Sequence[MeasuredResponse]) -> bool:
     return all(one.averages and one.values.size >= FEWEST_JUDGED for one in measured)
 
 
-def _are_in_time(measured: Sequence[MeasuredResponse], given: FitOptions) -> bool:
+def are_in_time(measured: Sequence[MeasuredResponse], given: FitOptions) -> bool:
     """Tell whether all responses are of records that can be fitted in time, and nothing else is asked for."""
     is_lag_free = given.is_lag_free or given.is_lag_signed
     are_driven = {one.input is not None for response in measured for one in response.samples}
