@@ -13,6 +13,7 @@ its wall is a pin; no other change makes them so.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
@@ -24,8 +25,8 @@ from flint import arb
 
 from symflex.audit.tables import EntryAudit, TableAudit, judge_table, last_place, significant, verdict_on
 from symflex.balls import ball, precision
-from symflex.budget import spend
-from symflex.errors import Source, SymflexError
+from symflex.budget import Budget, spend
+from symflex.errors import BudgetError, Source, SymflexError
 from symflex.expressions import (
     Call,
     Expression,
@@ -49,6 +50,8 @@ from symflex.model.spec import ArrayValue, StringValue, TableValue, Value
 from symflex.model.spec.parse import parse as parse_specification
 
 MOST_CHANGES: Final = 400  # changes of a model that are tried for one table
+SEARCHED: Final = 40.0  # seconds after which no more changes are tried
+OVER: Final = ("SF504", "SF506")  # codes of a budget that is used up
 MOST_OF_ONE: Final = 40  # changes of one expression
 ENOUGH_DIGITS: Final = 6  # printed digits of wrong entries in all, below which a match says little
 SHOWN: Final = 3  # explanations that are named
@@ -127,7 +130,8 @@ def explained(found: TableAudit, model: Model, source: Source, load: Callable[[S
     if sum(significant(e.printed) for e in _wrong(found) if e.printed) >= ENOUGH_DIGITS:
         offered = chain(_of_values(model, found.table), _of_text(found.table, source, load))
         fitting = (c.said for c in islice(offered, MOST_CHANGES) if _explains(c, found))
-        said += islice(fitting, SHOWN)
+        with suppress(BudgetError), Budget(seconds=SEARCHED).entered():  # what is found until then is told
+            said += islice(fitting, SHOWN)
     which = "the entry is" if found.count == 1 else f"all {found.count} entries are"
     evidence = f": with this {which} right" if said else ""
     return replace(found, slip="; or ".join(said) + evidence)
@@ -212,7 +216,9 @@ def _explains(change: _Change, found: TableAudit) -> bool:
         if not judge_table(model, replace(table, rows=(table.rows[first],))).is_right:
             return False
         return len(table.rows) == 1 or judge_table(model, table).is_right
-    except SymflexError:
+    except SymflexError as error:
+        if error.diagnostics[0].code in OVER:
+            raise
         return False
 
 

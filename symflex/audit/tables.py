@@ -29,6 +29,7 @@ from symflex.expressions import (
     Expression,
     Name,
     format_expression,
+    negative,
     number,
     power,
     product_of,
@@ -44,7 +45,7 @@ from symflex.roots.region import Everything, Modes
 from symflex.roots.root import GUARD_BITS, Root
 from symflex.transfer.of_model import derive_for_roots
 
-EntryVerdict = Literal["right", "rounded", "wrong", "extra", "missing", "undecided", "gap"]
+EntryVerdict = Literal["right", "rounded", "wrong", "extra", "missing", "undecided", "unread", "gap"]
 TableVerdict = Literal["right", "rounded", "wrong", "undecided"]
 
 BEYOND: Final = 8  # digits beyond the printed ones: on which side of a half a value lies
@@ -54,19 +55,26 @@ MOST_MODES: Final = 400  # searched for one row
 # Costs of a pairing. A wrong entry that is near its root is a wrong entry, and one at another root is not.
 WRONG, FAR, FARTHEST, SKIPPED, SPARE_ENTRY = 0.7, 3.0, 1.5, 1.0, 2.3
 BITS: Final = 4  # of a decimal digit, rounded up
-_OMEGA, _F = Name("omega"), Name("f")
+_OMEGA, _F, _ZETA = Name("omega"), Name("f"), Name("zeta")
 COMMON: Final[Mapping[str, Expression]] = {
     "omega [rad/s]": _OMEGA,
     "f [Hz]": _F,
     "f [rpm]": product_of([number(60), _F]),
     "omega^2": power(_OMEGA, 2),
     "1/f [s]": quotient(number(1), _F),
+    "omega_n [rad/s]": Name("omega_n"),
+    "f_n [Hz]": Name("f_n"),
+    "zeta": _ZETA,
+    "zeta [%]": product_of([number(100), _ZETA]),
+    "sigma [rad/s]": Name("sigma"),
+    "-sigma [rad/s]": negative(Name("sigma")),
 }
 """What tables print that do not say what: the one with which most entries are right."""
 POWERS: Final = (Fraction(1), Fraction(1, 2), Fraction(2), Fraction(-1))
 """Exponents of omega in frequencies, wavenumbers of beams, eigenvalues and periods."""
 CLOSE: Final = 0.5  # share of entries that must be right to 1 % for a reading to be taken
 CLOSE_IN_PROPORTION: Final = 0.75  # where a factor was chosen that makes some of them so
+FEWEST_CLOSE: Final = 2  # of a row with more than one entry: one alone may be near by chance
 NEAR: Final = 0.01
 FEWEST_ENTRIES: Final = 3  # for a factor that is not said
 NO_READING: Final = "what the table prints of a root is not said, and no common quantity fits"
@@ -104,7 +112,7 @@ class TableAudit:
     @property
     def count(self) -> int:
         """How many entries are printed."""
-        return sum(entry.verdict not in ("gap", "missing") for entry in self.entries)
+        return sum(entry.verdict not in ("gap", "missing", "unread") for entry in self.entries)
 
     @property
     def close(self) -> int:
@@ -144,18 +152,45 @@ def judge_table(model: Model, table: PrintedTable) -> TableAudit:
     rows = [_RowOfRoots(known[row.values], row) for row in table.rows]
     if table.prints is not None:
         return _judged(table, rows, table.prints, format_expression(table.prints))
+    if any(row.heading for row in table.rows):  # columns may print different quantities
+        each = [_read([row], table) for row in rows]
+    else:
+        each = [_read(rows, table)]
+    audits = [audit for audit in each if audit.prints is not None] or each[:1]
+    quantities = {audit.reading: audit.prints for audit in audits if audit.prints is not None}
+    for i, audit in enumerate(each):  # a column that is half right in the quantity of another one
+        if audit.prints is None:
+            again = [_judged(table, [rows[i]], prints, reading) for reading, prints in quantities.items()]
+            best = max(again, key=lambda one: one.close, default=audit)
+            each[i] = best if best.close >= max(CLOSE * best.count, 1) else audit
+    entries = (
+        [replace(e, row=i) for i, audit in enumerate(each, 1) for e in audit.entries]
+        if len(each) > 1
+        else each[0].entries
+    )
+    readings = dict.fromkeys(audit.reading for audit in audits)
+    reasons = dict.fromkeys(filter(None, (audit.reason for audit in audits)))
+    return TableAudit(table, audits[0].prints, "; ".join(readings), tuple(entries), "; ".join(reasons))
+
+
+def _read(rows: Sequence[_RowOfRoots], table: PrintedTable) -> TableAudit:
+    """Return what is found about rows that do not say what they print."""
     readings = chain(COMMON.items(), _in_proportion(rows))
     tried = [_judged(table, rows, prints, reading) for reading, prints in readings]
     best = max(tried, key=lambda audit: (audit.is_right, audit.close))
     least = CLOSE if best.reading in COMMON else CLOSE_IN_PROPORTION
-    if best.close >= least * best.count:
+    if best.close >= max(least * best.count, min(FEWEST_CLOSE, best.count), 1):
         return best
     entries = tuple(
-        EntryAudit(i, j, text, "gap" if text == GAP else "undecided")
-        for i, row in enumerate(table.rows, 1)
-        for j, text in enumerate(row.entries, 1)
+        EntryAudit(i, j, text, "gap" if text == GAP else "unread")
+        for i, row in enumerate(rows, 1)
+        for j, text in enumerate(row.row.entries, 1)
     )
-    return TableAudit(table, None, "", entries, f'{NO_READING}: say it, prints = "..."')
+    has_roots = any(row.located.values(_OMEGA, BEYOND) for row in rows)
+    none = f"{'/'.join(table.tf)} has no {table.of}"
+    return TableAudit(
+        table, None, "", entries, f'{NO_READING}: say it, prints = "..."' if has_roots else none
+    )
 
 
 def _judged(table: PrintedTable, rows: Sequence[_RowOfRoots], prints: Expression, reading: str) -> TableAudit:
@@ -248,6 +283,8 @@ class _Located:
                     "omega": acb(root.im),
                     "sigma": acb(root.re),
                     "f": acb(root.im / (2 * arb.pi())),
+                    "omega_n": acb(size),
+                    "f_n": acb(size / (2 * arb.pi())),
                     "zeta": acb(0 if root.on_imaginary_axis else -root.re / size),
                 }
                 value = value_of(expression, at).real
@@ -314,13 +351,25 @@ class _RowOfRoots:
 
         aligned = _aligned(entries, values)
         without = [k for k in range(len(values)) if k not in spare]
-        in_order = [
+        in_order: list[list[tuple[int | None, int | None]]] = [
             [*zip(range(len(entries)), listed, strict=False)]
             for listed in (range(len(values)), without)
             if len(listed) >= len(entries)
         ]
-        best = max(in_order, key=fitting, default=aligned)
+        best = max((*in_order, self._in_any_order(values)), key=fitting)
         return aligned if fitting(aligned) > fitting(best) else [*best]
+
+    def _in_any_order(self, values: Sequence[tuple[arb, bool]]) -> list[tuple[int | None, int | None]]:
+        """Return each entry with a value that it fits, if all do; nothing otherwise."""
+        free = list(range(len(values)))
+        pairs: list[tuple[int | None, int | None]] = []
+        for column, text in enumerate(self.row.entries):
+            fit = next((k for k in free if text != GAP and verdict_on(text, values[k][0]) != "wrong"), None)
+            if fit is None:
+                return []
+            free.remove(fit)
+            pairs.append((column, fit))
+        return pairs
 
 
 def _aligned(

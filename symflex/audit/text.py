@@ -38,6 +38,7 @@ ENTRY_VERDICTS = {
     "missing": "MISSING in print",
     "undecided": "not decided",
 }
+READING_NOT_SAID = " (it does not say so; the most common reading that fits)"
 
 
 def audit_text(audit: Audit, width: int = WIDTH) -> str:
@@ -225,11 +226,15 @@ def table_text(found: TableAudit, width: int = WIDTH) -> str:
         lines += _filled(f"printed in: {table.source}", width, INDENT)
     if found.prints is not None:
         said = f"prints {found.reading} of the {table.of} of {'/'.join(table.tf)}"
-        said += "" if table.prints is not None else " (it does not say so; the most common reading that fits)"
+        said += "" if table.prints is not None else READING_NOT_SAID
         lines += _filled(said, width, INDENT)
         lines += _filled(f"right to the last digit: {found.right} of {found.count} (proved)", width, INDENT)
     if found.reason:
         lines += _filled(f"not proved: {found.reason}", width, INDENT)
+    unread = {e.row for e in found.entries if e.verdict == "unread"}
+    if unread and found.prints is not None:
+        said = ", ".join(table.rows[i - 1].heading or str(i) for i in sorted(unread))
+        lines += _filled(f"not judged, as no common quantity fits: {said}", width, INDENT)
     rows = [("row", "column", "printed", "right", "")]
     for e in found.entries:
         said = ENTRY_VERDICTS.get(e.verdict, "")

@@ -412,6 +412,8 @@ ROOT_QUANTITIES = {
     "omega": "the imaginary part of a root [rad/s]",
     "sigma": "its real part [rad/s]",
     "f": "the imaginary part over 2 pi [Hz]",
+    "omega_n": "its distance from 0, the natural frequency [rad/s]",
+    "f_n": "that distance over 2 pi [Hz]",
     "zeta": "the damping ratio, minus the real part over the distance from 0",
 }
 """What ``prints`` of a table may use of a root."""

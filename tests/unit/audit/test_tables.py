@@ -176,6 +176,20 @@ def test_a_tabular_is_read_as_it_is_typed():
     assert (found.reading, verdicts(found)) == ("f [Hz]", ["right"] * 4 + ["wrong", "gap"])
 
 
+def test_natural_frequencies_in_any_order_and_columns_of_other_quantities():
+    # m_1 x'' + c x' + k_1 x with 1 kg, 20 N s/m, 4 kN/m: omega_n = 63.2456, zeta = 0.158114, sigma = -10.
+    # m_2 alone on 7 kN/m: omega_n = 48.3046.
+    model = CHAIN.replace('between = ["x", "y"], k = "k_2"', 'between = ["ground", "y"], k = "k_2"')
+    model = model.replace("s = {", 'd = { type = "damper", between = ["ground", "x"], b = "c" }\ns = {')
+    model = model.replace('X = "x"', 'X = "x + y"').replace("F = { force", 'G = { force = "x" }\nF = { force')
+    model = model.replace('X = "x + y"\nY = "y"', 'X = "x"')
+    assert judged(model, 'values = ["63.2456"]').reading == "omega_n [rad/s]"
+    table = r"n & $f$ & error \\% \\\\ 1 & 9.9392 & 3 \\\\ 2 & 17 & 4"
+    assert judged(model, 'prints = "-sigma"\nvalues = ["10.000"]').verdict == "right"
+    assert judged(BEAM, 'prints = "f"\nvalues = ["177.58", "28.336"]').verdict == "right"
+    assert judged(BEAM, f"latex = '{table}'").verdict == "undecided"
+
+
 def test_zeros_and_damping_ratios():
     # X/F has no zeros; Y/F those of m_1 on both springs, sqrt(11000).
     assert judged(CHAIN, 'of = "zeros"\ntf = "Y/F"\nprints = "omega"\nvalues = ["104.88"]').verdict == "right"
