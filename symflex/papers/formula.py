@@ -52,6 +52,7 @@ from symflex.expressions import (
 )
 from symflex.papers.labels import ACCENTS, GREEK
 from symflex.papers.source import (
+    BRACED,
     CLOSERS,
     DEEPEST,
     DELIMITERS,
@@ -416,6 +417,11 @@ def evaluated(expression: Expression, seed: str = "") -> complex:
     )
 
 
+ALONE: Final = frozenset(("", "+", "=", "&", "{", r"\\", r"\over", ",", *DELIMITERS))
+"""After these a group stands by itself."""
+LONGEST_BRACE: Final = max(map(len, BRACED)) + 2
+
+
 class _LatexReader:
     """Reads one list of tokens once. ``choices`` says where to take another reading than the first."""
 
@@ -685,6 +691,28 @@ class _LatexReader:
             self.refuse("an argument is missing here")
         return self.atom(alone=True)[0]
 
+    def is_of_digits(self) -> bool:
+        """Tell whether a fraction of two numbers stands here, as in one and a half."""
+        end = group_end(self.tokens, self.at + 1)
+        parts = self.tokens[self.at + 1 : group_end(self.tokens, end)]
+        return all(x.text.isdigit() or x.text in "{}" for x in parts)
+
+    def braced(self, *, alone: bool) -> Value:
+        """Return a group between other factors; braces do not show, so a sum in them is not bracketed."""
+        start = self.at
+        value = self.group()
+        first, last = self.tokens[start + 1].text, self.at - 1
+        span = self.tokens[start].span
+        typed = span.source.text[max(span.start - LONGEST_BRACE, 0) : span.start].rstrip()
+        shows = first in DELIMITERS and self.end_of_bracket(start + 1) == last
+        shows = shows or typed.endswith(tuple(BRACED))
+        before = self.tokens[start - 1].text if start else ""
+        is_joined = self.text == "^" or self.starts() or before not in ALONE
+        is_open = isinstance(value, Sum) or (self.text == "^" and isinstance(value, Product))
+        if not (alone or shows) and is_joined and is_open:
+            self.refuse("braces do not show, so this may be a bracket or none", "write ( and )", start)
+        return value
+
     def group_expression(self) -> Expression:
         start = self.at
         value = self.group()
@@ -696,7 +724,10 @@ class _LatexReader:
         """Return an atom, and whether powers after it are still to be read."""
         start, text = self.at, self.text
         if text.isdigit() or (text == "." and self.ahead().isdigit()):
-            return self.number(), True
+            value = self.number()
+            if self.text in FRACTIONS and self.is_of_digits():
+                self.refuse("this may be a mixed number or a product", r"write \cdot, or one fraction", start)
+            return value, True
         if upright := self.upright_base():
             return self.exponential(start, upright), False
         if text == "{":
@@ -708,7 +739,7 @@ class _LatexReader:
             after = self.tokens[min(group_end(self.tokens, start), len(self.tokens) - 1)].text
             if after == "_" or after in PRIMES:  # {\omega}_c
                 return self.symbol(alone=alone), False
-            return self.group(), True
+            return self.braced(alone=alone), True
         if text in DELIMITERS:
             return self.bracket(), True
         if text in FRACTIONS:
@@ -1483,6 +1514,8 @@ class _LatexReader:
         below = text_of(t for t in self.tokens[end:stop] if t.text not in FONTS and t.text not in "{}")
         match = re.fullmatch(r"(d|\\partial)([a-z])(?:\^(\d))?", below)
         above = shown[1:-1] if shown and shown[0].text == "{" else shown
+        if [x.text for x in above[:3:2]] == ["{", "}"] and above[1].text in ("d", r"\partial"):
+            above = [above[1], *above[3:]]  # the braces of an upright d
         head = re.match(r"(d|\\partial)(?:\^(\d|\{\d\}))?", text_of(above))
         if match is None or head is None or head[1] != match[1]:
             return None

@@ -132,6 +132,9 @@ TWO_READINGS = (
     r"\log x",
     r"\cosh\sqrt{a}\frac{b}{c}",
     r"K(-s)",
+    "{ms}^2",  # braces do not show
+    "c{s+k}",
+    r"1\frac12m",  # one and a half
 )
 
 

@@ -34,6 +34,11 @@ def test_equations_in_dots_become_equations_in_primes() -> None:
     assert model.transfer_functions == (("X", "F"), ("Theta", "F"))
 
 
+def test_an_upright_d_is_a_differential() -> None:
+    text = specification(r"\[ m\frac{\mathrm{d}^2x}{\mathrm{d}t^2}+c\frac{\mathrm{d}x}{\mathrm{d}t}+kx=F \]")
+    assert equations(text) == ["m*x'' + c*x' + k*x = F"]
+
+
 def test_each_line_says_what_it_was_read_from() -> None:
     assert r"# line 2: (M+m)\ddot{x} + b\dot x + ml\ddot\theta &= F(t)" in specification(CART)
 
