@@ -81,6 +81,7 @@ EXPLAINED = 1.5  # sum of squares per degree of freedom up to which noise explai
 EQUAL = 4.0  # sum of squares by which two minima describe the data equally well
 EQUAL_COEFFICIENTS = 1e-9  # relative distance of coefficients within which parameters are others of the same
 EDGE = 25.0  # ln p, or parameters over their scale, stay within this of their start
+LOST = 1e3  # standard error over the value from which on no value is told
 STRONG = 0.95  # correlation that is named
 WEAK = 0.5  # relative standard error from which a parameter is hardly determined by the data
 CONTRADICTED = 3.3  # standard deviations off what a spread says that noise exceeds once in a thousand cases
@@ -217,16 +218,21 @@ class ParameterFit:
 
     @property
     def errors(self) -> Real:
-        """Standard errors; infinite for parameters that no data of this kind determine."""
+        """Standard errors; infinite for parameters that no data of this kind, or not these, determine."""
         mixed = self.machine.identifiability.mixed
         found = np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
-        return np.where([name in mixed for name in self.machine.names], np.inf, found)
+        # A variance that is not positive is rounding: nothing was measured of the parameter.
+        is_lost = ~(np.isfinite(found) & (found > 0)) | (found > LOST * np.abs(self.theta))
+        is_lost &= self.theta != 0
+        return np.where([name in mixed for name in self.machine.names] | is_lost, np.inf, found)
 
     @property
     def correlations(self) -> Real:
-        """Correlations of the errors, shape (p, p)."""
-        size = np.sqrt(np.maximum(np.diag(self.covariance), np.finfo(float).tiny))
-        return np.asarray(self.covariance / np.outer(size, size), np.float64)
+        """Correlations of the errors, shape (p, p); 0 for what is not determined."""
+        size = np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
+        inverse = np.where((size > 0) & np.isfinite(size), 1 / np.where(size > 0, size, 1.0), 0.0)
+        shares = np.nan_to_num(self.covariance * np.outer(inverse, inverse))
+        return np.asarray(np.clip(shares, -1.0, 1.0), np.float64)
 
     def interval(self, value: float, error: float, *, is_positive: bool) -> tuple[float, float]:
         """Return the interval of a value that holds the true one in 95 % of cases."""
@@ -277,8 +283,9 @@ class ParameterFit:
 
     def strong_correlations(self) -> list[tuple[str, str, float]]:
         """Return pairs of determined parameters whose errors hang together, the closest first."""
-        names, table = self.machine.names, self.correlations
-        alone = self.machine.identifiability.alone
+        names, table, errors = self.machine.names, self.correlations, self.errors
+        alone = [n for n, e in zip(names, errors, strict=True) if np.isfinite(e)]
+        alone = [n for n in alone if n in self.machine.identifiability.alone]
         pairs = [
             (names[i], names[j], float(table[i, j]))
             for i in range(len(names))
@@ -1016,6 +1023,9 @@ def _warnings(fit: ParameterFit) -> tuple[str, ...]:
                 f"{p.name} is not determined: its standard error is {reach}; from {low:.4g} to {high:.4g} Hz "
                 "the response hardly depends on it"
             )
+        if not np.isfinite(error) and p.name in fit.machine.identifiability.alone:
+            where = f"from {low:.4g} to {high:.4g} Hz"
+            said.append(f"{p.name} is not determined: with these values nothing depends on it {where}")
         if p.assume == "nonnegative" and value == 0:
             said.append(f"{p.name} is zero, its bound: its error says how large it may be")
     for a, b, share in fit.strong_correlations():

@@ -139,7 +139,8 @@ def _identifiability(fit: ParameterFit) -> Iterator[Passage]:
         ]
         yield Passage(lines, rows if len(rows) > 1 else ())
     names = machine.names
-    for twin in fit.twins:
+    lost = [n for n, e in zip(names, fit.errors, strict=True) if not isfinite(e) and n in known.alone]
+    for twin in () if lost else fit.twins:
         changed = [
             f"{name} = {value / _written_scale(p)[0]:.5g} {_written_scale(p)[1]}".rstrip()
             for name, p, value, own in zip(names, machine.parameters, twin, fit.theta, strict=True)
