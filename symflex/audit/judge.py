@@ -20,9 +20,9 @@ from symflex.audit.numeric import (
 )
 from symflex.audit.reading import Formula, FormulaReading, formula_of, read
 from symflex.budget import spend
-from symflex.errors import BudgetError, Diagnostic, SpecError, nearest, refused
-from symflex.expressions import Expression, Sum, format_expression, nodes
-from symflex.model import Definition, Model, Published
+from symflex.errors import BudgetError, Diagnostic, SpecError, SymflexError, nearest, refused
+from symflex.expressions import Expression, Sum, format_expression, names, nodes
+from symflex.model import Definition, Model, Published, with_numbers
 from symflex.model.loss_factors import check_causal
 from symflex.model.units import constant_measure
 from symflex.transfer import TransferFunction
@@ -52,6 +52,7 @@ class Audit:
     deviation: Deviation | None = None
     laws: tuple[LawCheck, ...] = ()  # structural laws
     units: tuple[str, ...] = ()  # printed sums whose terms are measured differently, in words
+    numeric: tuple[str, ...] = ()  # parameters in whose place the model's values stand
 
     def __repr__(self) -> str:
         return f"<Audit {self.tf.name}: {self.verdict}>"
@@ -68,7 +69,29 @@ class Audit:
 
 
 def judge(tf: TransferFunction, published: Published) -> Audit:
-    """Compare a printed formula with the derived function; SpecError for what is no formula."""
+    """Compare a printed formula with the derived function; SpecError for what is no formula.
+
+    A formula that prints numbers for some parameters is compared with the function that has the model's
+    values in their place.
+    """
+    found = _judged(tf, published)
+    if found.verdict == "equal":
+        return found
+    printed = {n.name for e in (found.formula.whole, *(e for _, e in found.formula.lines)) for n in names(e)}
+    numeric = [p.name for p in tf.parameters if p.value is not None and p.name not in printed]
+    if not numeric:
+        return found
+    kept = [p.name for p in tf.model.parameters if p.name not in numeric]
+    try:
+        (with_values,) = derive_all(with_numbers(tf.model, kept, in_kernels=True), [published.tf])
+        again = replace(_judged(with_values, published), numeric=tuple(numeric))
+    except SymflexError:
+        return found
+    is_plainer = not any(p.name in printed for p in tf.parameters) or (again.changes and not found.changes)
+    return again if again.verdict == "equal" or is_plainer else found
+
+
+def _judged(tf: TransferFunction, published: Published) -> Audit:
     formula = formula_of(published, tf.model)
     unread, reading = "", None
     try:

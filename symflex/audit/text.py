@@ -49,6 +49,10 @@ def audit_text(audit: Audit, width: int = WIDTH) -> str:
     lines = [f"{audit.tf.name}   {verdict}"]
     if audit.published.source:
         lines += _filled(f"printed in: {audit.published.source}", width, INDENT)
+    if audit.numeric:
+        values = "the value" if len(audit.numeric) == 1 else "the values"
+        said = f"with {values} of the model for {', '.join(audit.numeric)}"
+        lines += _filled(said, width, INDENT)
     if audit.unread:
         label = "not read exactly" if audit.verdict == "differs" else "reason"
         lines += _filled(f"{label}: {audit.unread}", width, INDENT)
@@ -309,6 +313,7 @@ def audit_json(audit: Audit) -> dict[str, object]:
         "deviation": _deviation(audit.deviation),
         "laws": [asdict(law) for law in audit.laws],
         "units": list(audit.units),
+        "numeric": list(audit.numeric),
     }
 
 

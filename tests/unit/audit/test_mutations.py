@@ -440,3 +440,31 @@ def test_a_ratio_turned_over_is_found_with_sums_among_its_factors():
         (change,) = audit(pipeline.loads(TWO_INERTIAS + lines))[0].changes
         printed, derived = format_expression(change.printed), format_expression(change.derived)
         assert f"{change.place}: {printed}, {derived}" == expected
+
+
+OSCILLATOR = """symflex = 1
+parameters = { m = "2 kg", c = "4 N*s/m", k = "800 N/m" }
+inputs.F = { force = "x" }
+outputs.X = "x"
+[elements]
+body = { type = "mass", at = "x", m = "m" }
+spring = { type = "spring", between = ["x", "ground"], k = "k" }
+damper = { type = "damper", between = ["x", "ground"], b = "c" }
+[published."X/F"]
+"""
+
+
+@pytest.mark.parametrize(
+    ("expr", "verdict", "numeric", "changes"),
+    [
+        ("0.5/(s^2 + 2*s + 400)", "equal", ("m", "c", "k"), []),
+        ("1/(m*s^2 + 4*s + 800)", "equal", ("c", "k"), []),
+        ("0.5/(s^2 + 2*s + 200)", "differs", ("m", "c", "k"), [("denominator", "200", "400")]),
+        ("1/(2*s^2 - 4*s + k)", "differs", ("m", "c"), [("denominator", "-4*s", "4*s")]),
+        ("1/(m*s^2 + k)", "differs", (), [("denominator", "0", "c*s")]),
+    ],
+)
+def test_a_formula_with_numbers_is_compared_at_the_models_values(expr, verdict, numeric, changes):
+    (found,) = audit(pipeline.loads(f"{OSCILLATOR}expr = '{expr}'\n"))
+    said = [(c.place, format_expression(c.printed), format_expression(c.derived)) for c in found.changes]
+    assert (found.verdict, found.numeric, said) == (verdict, numeric, changes)
