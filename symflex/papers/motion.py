@@ -70,6 +70,7 @@ class _PaperMotion:
     definitions: dict[str, tuple[Expression, PrintedEquation]] = field(default_factory=dict)
     gaps: list[str] = field(default_factory=list)
     timed: set[str] = field(default_factory=set)  # what is written as a function of t
+    matrices: set[str] = field(default_factory=set)  # names of matrices and vectors
 
 
 def motion_specification(paper: Paper, title: str) -> str:
@@ -102,6 +103,12 @@ def _read(paper: Paper, notation: PaperNotation) -> _PaperMotion:
         for equation in equations:
             if len(equation.sides) > 1 and not equation.is_condition:
                 _take(equation, notation, found, is_inline=display.is_inline)
+    for one in found.equations:
+        held = {n.name for n in (*names(one.left), *names(one.right))}
+        if held & found.matrices:
+            listed = ", ".join(sorted(held & found.matrices))
+            message = f"an equation of matrices is not read: {listed} of this paper has rows and columns"
+            raise refusal(one.printed.span, message, "write the equations out, a line for each row")
     return found
 
 
@@ -120,7 +127,14 @@ def _take(
         if not is_inline:
             found.gaps.append(f"line {equation.span.line} holds only nearly: {_comment(equation)}")
         return
-    for left, right in _rows(sides[0], sides[-1]):
+    rows = _rows(sides[0], sides[-1])
+    if not rows:
+        named = next((x.name for x in (sides[0], sides[-1]) if isinstance(x, Name)), None)
+        if named is not None:
+            found.matrices.add(named)
+        elif not is_inline:
+            found.gaps.append(f"line {equation.span.line} has sides of different sizes: {_comment(equation)}")
+    for left, right in rows:
         one = _Equation(left, right, equation)
         held = (*names(left), *names(right))
         moving = any(isinstance(n, Derivative) for n in held)

@@ -39,6 +39,16 @@ def test_an_upright_d_is_a_differential() -> None:
     assert equations(text) == ["m*x'' + c*x' + k*x = F"]
 
 
+def test_equations_of_named_matrices_are_refused() -> None:
+    matrix = r"\begin{bmatrix}0&1\\-k/m&-c/m\end{bmatrix}"
+    for text in (
+        rf"\[ \dot{{x}}=Ax+Bu \] \[ A={matrix} \]",
+        rf"\[ \dot{{\mathbf{{x}}}} = \mathbf{{A}}\mathbf{{x}}+\mathbf{{b}}u,\ \mathbf{{A}}={matrix} \]",
+    ):
+        with pytest.raises(SpecError, match="A of this paper has rows and columns"):
+            specification(text)
+
+
 def test_each_line_says_what_it_was_read_from() -> None:
     assert r"# line 2: (M+m)\ddot{x} + b\dot x + ml\ddot\theta &= F(t)" in specification(CART)
 
