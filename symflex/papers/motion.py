@@ -85,6 +85,8 @@ def motion_specification(paper: Paper, title: str) -> str:
     ):
         span = paper.displays[0].span if paper.displays else None
         message = "there are no equations of motion: no displayed equation has a derivative in time"
+        if found.gaps:
+            message = f"no equation of motion is read; {found.gaps[0]}"
         raise refusal(span, message, r"derivatives are \dot{x}, x'' or \frac{d^2 x}{dt^2}")
     return _field_text(found, title) if is_field else _text(found, title)
 

@@ -180,6 +180,7 @@ class _Court:
             Span, str
         ] = {}  # equations that define what other formulas contain, and what they define
         self.derived: dict[tuple[int, tuple[str, str]], object] = {}
+        self.tied: dict[tuple[int, str], tuple[str, str]] = {}  # what a letter is, by model
         for display in paper.displays:
             try:
                 if display.problem is not None:
@@ -227,6 +228,12 @@ class _Court:
         sides, _ = in_laplace(read, notation)
         defined = {s.name for s, e in self.definitions.items() if e is equation}
         claims = list(_claims(sides, model, {*notation.names.values()} - defined))
+        number_of = self.models.index(model)
+        for pair in model.transfer_functions:  # H = X/F = ... says what H is, also where it comes again
+            if any(side == Quotient(*map(Name, pair)) for side in sides):
+                self.tied |= {(number_of, side.name): pair for side in sides if isinstance(side, Name)}
+        if not claims and isinstance(sides[0], Name) and (number_of, sides[0].name) in self.tied:
+            claims = [(self.tied[number_of, sides[0].name], sides[-1])]
         if not claims:
             raise _Unjudged("other model", "it names no transfer function of the models")
         best: JudgedFormula | None = None
@@ -255,9 +262,16 @@ class _Court:
         answers: list[JudgedFormula] = []
         if tf is None and not any(_holds(e, LAPLACE) for e in (formula, *(e for _, e in lines))):
             raise _Unjudged("other model", "it names no transfer function of the models, and has no s")
+        # The paper may define what is a parameter of the model: zeta = c/(2 sqrt(k m)).
+        try:
+            own = self.lines(formula, model, notation, item.equation.span, hides=True)
+        except (_Unjudged, SpecError):
+            own = lines
         for pair in [tf] if tf is not None else model.transfer_functions[:MOST_PAIRS]:
-            printed = Published(pair, formula, lines, None, "", item.equation.span, is_latex=True)
-            for meant in dict.fromkeys((_in_radians(printed, model), printed)):
+            every = [
+                Published(pair, formula, x, None, "", item.equation.span, is_latex=True) for x in (lines, own)
+            ]
+            for meant in dict.fromkeys(x for p in every for x in (_in_radians(p, model), p)):
                 if not any(a.verdict == "equal" for a in answers):
                     answers.append(_judged(item, model, self.audit(model, meant)))
         best = min(answers, key=_rank)
@@ -294,9 +308,18 @@ class _Court:
         return replace(base.with_names(more), signals=varying - {p.name for p in model.parameters})
 
     def lines(
-        self, formula: Expression, model: Model, notation: PaperNotation, where: Span
+        self,
+        formula: Expression,
+        model: Model,
+        notation: PaperNotation,
+        where: Span,
+        *,
+        hides: bool = False,
     ) -> tuple[tuple[str, Expression], ...]:
-        """Return the definitions that a formula needs; symbols without a meaning raise a verdict."""
+        """Return the definitions that a formula needs; symbols without a meaning raise a verdict.
+
+        Those of the paper stand for definitions of the model, and with ``hides`` for its parameters too.
+        """
         readable = readable_names(model)
         meant = {*readable.constants, *readable.definitions}
         lines: dict[str, Expression] = {}
@@ -307,7 +330,8 @@ class _Court:
                 if not isinstance(node, Name) or node.name in lines:
                     continue
                 equation, bound = self.defining(node.name)
-                if node.name in meant and (equation is None or node.name not in readable.definitions):
+                hidden = hides or node.name in readable.definitions
+                if node.name in meant and (equation is None or not hidden):
                     continue
                 if equation is None:
                     unknown.setdefault(node.name, node)

@@ -132,3 +132,28 @@ def test_tables_near_the_poles_of_a_model_are_judged():
     assert [t["verdict"] for t in document["tables"]] == ["rounded", "other model"]
     assert "not about the poles" in referee_text((), (first, second))
     assert "badly rounded" in report_page(referee_page("paper.tex", (), (first, second)))
+
+
+OSCILLATOR = """
+symflex = 1
+parameters = { m = "2 kg", c = "4 N*s/m", k = "800 N/m", zeta = "0.3", omega_0 = "3 rad/s" }
+inputs = { F = { force = "x" } }
+outputs = { X = "x" }
+[elements]
+body = { type = "mass", at = "x", m = "m" }
+spring = { type = "spring", between = ["x", "ground"], k = "k" }
+damper = { type = "damper", between = ["x", "ground"], b = "c" }
+"""
+
+
+def test_a_papers_definitions_stand_for_parameters_of_the_model():
+    paper = r"""where $\omega_0=\sqrt{k/m}$ and $\zeta=\frac{c}{2\sqrt{km}}$.
+    \[ \frac{X}{F} = \frac{1/m}{s^2+2\zeta\omega_0s+\omega_0^2} \]"""
+    (found,) = referee(read_text(Text.alone("paper.tex", paper)), [loads(OSCILLATOR)])
+    assert found.verdict == "equal"
+
+
+def test_a_letter_that_was_a_transfer_function_is_one_where_it_comes_again():
+    paper = r"\[ H(s) = \frac{X}{F} = \frac{1}{ms^2+cs+k} \] \[ H(s) = \frac{1}{ms^2+cs+2k} \]"
+    first, second = referee(read_text(Text.alone("paper.tex", paper)), [loads(OSCILLATOR)])
+    assert (first.verdict, second.verdict) == ("equal", "different")
