@@ -356,8 +356,9 @@ class _RowOfRoots:
             for listed in (range(len(values)), without)
             if len(listed) >= len(entries)
         ]
-        best = max((*in_order, self._in_any_order(values)), key=fitting)
-        return aligned if fitting(aligned) > fitting(best) else [*best]
+        offered = [*in_order, *filter(None, [self._in_any_order(values)])]
+        best = max(offered, key=fitting, default=aligned)
+        return aligned if fitting(aligned) > fitting(best) else best
 
     def _in_any_order(self, values: Sequence[tuple[arb, bool]]) -> list[tuple[int | None, int | None]]:
         """Return each entry with a value that it fits, if all do; nothing otherwise."""

@@ -6,14 +6,17 @@ import re
 from collections.abc import Sequence
 from dataclasses import asdict
 from math import isfinite
+from typing import TYPE_CHECKING
 
 from symflex.audit.judge import Audit
 from symflex.audit.numeric import Comparison, Deviation
-from symflex.audit.tables import TableAudit
 from symflex.errors.diagnostic import counted
 from symflex.expressions import Expression, format_expression, quotient
 from symflex.print.forms import print_form
 from symflex.print.text import INDENT, WIDTH, hanging, wrapped
+
+if TYPE_CHECKING:
+    from symflex.audit.tables import TableAudit
 
 NOTHING = 1e-30
 NEGLIGIBLE = 1e-6  # decibels or degrees below which a deviation is rounding

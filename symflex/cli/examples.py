@@ -115,7 +115,9 @@ def _needed_by(model: Path) -> dict[str, Path]:
             nested, shows_data = _reads(tomllib.loads(source.text))
             waiting += nested
             if shows_data:
-                needed |= {n: p for n, p in _all_in(folder).items() if p.suffix not in (".toml", ".md")}
+                needed |= {
+                    n: p for n, p in _all_in(folder).items() if p.suffix not in (".toml", ".md", ".tex")
+                }
     return needed
 
 

@@ -19,6 +19,7 @@ from symflex.options import AuditOptions, CheckOptions, DeriveOptions, ExportOpt
 
 if TYPE_CHECKING:
     from symflex.audit import Audit
+    from symflex.audit.tables import TableAudit
     from symflex.codegen.export import Exporter
     from symflex.model import Model, ModelParameter
 
@@ -411,7 +412,11 @@ def audit(spec: Specification, given: AuditOptions) -> int:
     else:
         audits = audit_layer.audit(model, given.tfs)
     is_all = not given.tfs and given.latex is None
-    tables = audit_layer.audit_tables(model, spec.source(), spec.load_changed) if is_all else ()
+    tables: tuple[TableAudit, ...] = ()
+    if is_all and model.tables:
+        from symflex.audit.slips import audit_tables  # imports numpy
+
+        tables = audit_tables(model, spec.source(), spec.load_changed)
     if not (model.published or model.tables or given.latex):
         note('nothing is published in this specification: put a formula into [published."OUT/IN"]')
     if given.as_json:

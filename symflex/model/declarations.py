@@ -395,7 +395,8 @@ def read_definitions(reader: Reader, section: TableValue | None) -> tuple[Defini
             expression = reader.expression(value, what)
         elif value is not None:
             reader.misfit(f"{what} must be an expression", value)
-        return None if expression is None else Definition(entry.key, expression, label, entry.key_span)
+        doc = reader.plain(entry.value, "doc", what) if isinstance(entry.value, TableValue) else ""
+        return None if expression is None else Definition(entry.key, expression, label, entry.key_span, doc)
 
     return in_order(reader, reader.entries(section, "a definition", read, RESERVED))
 

@@ -129,6 +129,7 @@ class Definition:
     expression: Expression
     latex: str = ""
     span: Span | None = field(default=None, compare=False, repr=False)
+    doc: str = ""  # one that is described is wanted for itself, as a fit gives it with its error
 
 
 @dataclass(frozen=True, slots=True)

@@ -38,8 +38,8 @@ def warnings(model: Model, equations: Equations | None = None) -> tuple[Diagnost
 
 
 def _unused_definitions(model: Model) -> Iterator[Diagnostic]:
-    """Yield the definitions that no expression names and no print shows."""
-    unnamed = unnamed_definitions(model)
+    """Yield the definitions that no expression names, no print shows and no words describe."""
+    unnamed = [d for d in unnamed_definitions(model) if not d.doc]
     sums = [d for d in unnamed if isinstance(d.expression, Sum)]
     shown = {d.name for d in sums}
     if sums and not model.is_distributed and len(model.elements) <= NEVER_LARGE:

@@ -17,7 +17,9 @@ from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 from symflex.algebra import LAPLACE
-from symflex.audit import Audit, TableAudit, explained_by_print, judge, judge_array
+from symflex.audit import Audit, judge
+from symflex.audit.slips import explained_by_print
+from symflex.audit.tables import TableAudit, judge_array
 from symflex.audit.text import VERDICTS, table_json, table_text
 from symflex.budget import spend
 from symflex.errors import (

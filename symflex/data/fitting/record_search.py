@@ -24,6 +24,7 @@ import numpy as np
 from scipy.linalg import hankel, lstsq, qr
 
 from symflex.budget import entered_budget, spend
+from symflex.data.fitting.order import CLEAR
 from symflex.data.fitting.output_error import DEPENDENT, MOST_DAMPING, OutputError, PoleSet, Solved
 from symflex.data.fitting.resonances import NO_PEAK, Complex, Mask, Real
 from symflex.data.fitting.sampled_record import SampledRecord, autoregression, is_held
@@ -134,11 +135,19 @@ class RecordSearch:
             problem = self._coloured(state)
             state = self._climbed(_State.of(problem, state.dynamics).refined(*FIRST))
             state = self._varied(state)
-        state = self._refilled(state)
+        state = self._refilled(self._with_evidence(state))
         full = self._whole(state)
         dynamics = full.refined(state.dynamics)
         full = self._freed(full.with_noise(dynamics), dynamics)
         return full, full.refined(dynamics)
+
+    def _with_evidence(self, state: _State) -> _State:
+        """Return the fewest poles that were tried against which there is no strong evidence."""
+        for order in sorted(self.tried):
+            one = self.tried[order]
+            if order < state.dynamics.order and one.score < state.score + CLEAR:
+                return _State.of(one.problem, one.dynamics).refined(*FIRST)
+        return state
 
     def _freed(self, problem: OutputError, dynamics: PoleSet) -> OutputError:
         return problem.with_lost_inputs(dynamics) if self.lost else problem
@@ -226,7 +235,7 @@ class RecordSearch:
         if order not in self.tried or state.score < self.tried[order].score:
             self.tried[order] = Tried(state.score, state.dynamics, state.problem, state.costs)
 
-    def _climbed(self, state: _State, gain: float = GAIN) -> _State:
+    def _climbed(self, state: _State, gain: float = CLEAR) -> _State:
         """Return the state with terms added, and removed, as long as the criterion falls."""
         self.tried = {}
         self._note(state)

@@ -48,7 +48,7 @@ def test_a_folder_is_copied_with_all_that_is_in_it(shell):
     before = copied(shell)
     done = shell("examples", "copy", "eppinger1988")
     assert (done.code, done.out) == (0, "")
-    assert done.err == "wrote eppinger1988, 22 files; try: symflex report eppinger1988\n"
+    assert done.err == "wrote eppinger1988, 23 files; try: symflex report eppinger1988\n"
     original = WORKED / "eppinger1988"
     wanted = {p.relative_to(WORKED).as_posix(): p for p in original.rglob("*") if p.is_file()}
     assert copied(shell) - before == set(wanted)

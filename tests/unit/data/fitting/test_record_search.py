@@ -9,10 +9,14 @@ from tests.unit.data.records import KINDS, closed_loop, record, response, study,
 
 MODE = (2 * np.pi * 10, 0.02, (2 * np.pi * 10) ** 2, 0.0)
 STEP = 0.005
+UNSURE = (
+    "alias",
+    "closed loop",
+)  # where a fit says itself that its errors are too small, or that it may be wrong
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "alias"])
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind not in UNSURE])
 def test_errors_are_those_that_a_fit_in_time_says(kind):
     off, wrong, silent = study(kind, 10, seed=101)
     # The rms of 40 errors that are as they are said lies between these limits in 99 of 100 studies.
