@@ -117,6 +117,13 @@ def test_a_steady_sine_says_that_one_frequency_gives_one_value(tmp_path):
         fitted(tmp_path, u, y + 1e-4 * np.random.default_rng(5).standard_normal(t.size))
 
 
+def test_an_input_of_few_levels_is_said(tmp_path):
+    _, u, y = of_mode(11)
+    steps = np.ptp(u) / 100
+    assert "levels only" in " ".join(fitted(tmp_path, np.round(u / steps) * steps, y).warnings)
+    assert "levels" not in " ".join(fitted(tmp_path, u, y).warnings)
+
+
 def test_a_closed_loop_is_said(tmp_path):
     u, y = closed_loop(np.random.default_rng(7), [MODE], 2000, STEP, share=3.0)
     fit = fitted(tmp_path, u, y)
