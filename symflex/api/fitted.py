@@ -278,6 +278,7 @@ def fit(
     allow_outside: Sequence[str | Path] = (),
     estimator: str = "h1",
     segments: int | None = None,
+    hold: Literal["auto", "held", "joined", "smooth"] = "auto",
 ) -> FittedParameters: ...
 
 

@@ -171,7 +171,7 @@ def _left_out(reading: FormulaReading, tf: TransferFunction, numbers: Numbers) -
                 printed = before.terms if isinstance(before, Sum) else (before,)
                 for term in terms:
                     if term not in printed:
-                        # Of a sum, and of a side of the bar, only the term is missing.
+                        # The change of a sum, or of a side of the bar, is the missing term alone.
                         is_side = isinstance(part, Quotient) and part is formula.expression
                         is_sum = isinstance(before, Sum) or is_side
                         change = (number(0), term) if is_sum else (before, sum_of([before, term]))

@@ -130,7 +130,10 @@ def explained(found: TableAudit, model: Model, source: Source, load: Callable[[S
     if sum(significant(e.printed) for e in _wrong(found) if e.printed) >= ENOUGH_DIGITS:
         offered = chain(_of_values(model, found.table), _of_text(found.table, source, load))
         fitting = (c.said for c in islice(offered, MOST_CHANGES) if _explains(c, found))
-        with suppress(BudgetError), Budget(seconds=SEARCHED).entered():  # what is found until then is told
+        with (
+            suppress(BudgetError),
+            Budget(seconds=SEARCHED).entered(),
+        ):  # a slip found before that is still named
             said += islice(fitting, SHOWN)
     which = "the entry is" if found.count == 1 else f"all {found.count} entries are"
     evidence = f": with this {which} right" if said else ""

@@ -38,7 +38,7 @@ from symflex.expressions import (
 )
 from symflex.loops.over import with_values
 from symflex.model import ExactValue, Model, PrintedRow, PrintedTable
-from symflex.papers.tabular import GAP, PrintedList, cells_of, lists_of
+from symflex.papers.tabular import GAP, cells_of, lists_of
 from symflex.roots.locate import locate
 from symflex.roots.pole_zero_map import PoleZeroMap
 from symflex.roots.region import Everything, Modes
@@ -144,33 +144,41 @@ def judge_table(model: Model, table: PrintedTable) -> TableAudit:
     SymflexError
         As :func:`symflex.roots.locate.locate` for roots that cannot be found.
     """
-    digits = max(map(significant, (e for row in table.rows for e in row.entries if e != GAP)), default=4)
-    longest = max(len(row.entries) for row in table.rows)
-    known: dict[tuple[tuple[str, ExactValue], ...], _Located] = {}
-    for row in table.rows:  # rows of the same values share their roots
-        known[row.values] = known.get(row.values) or _Located(model, table, row.values, longest, digits)
-    rows = [_RowOfRoots(known[row.values], row) for row in table.rows]
+    rows = _located_rows(model, table)
     if table.prints is not None:
         return _judged(table, rows, table.prints, format_expression(table.prints))
     if any(row.heading for row in table.rows):  # columns may print different quantities
         each = [_read([row], table) for row in rows]
     else:
         each = [_read(rows, table)]
-    audits = [audit for audit in each if audit.prints is not None] or each[:1]
-    quantities = {audit.reading: audit.prints for audit in audits if audit.prints is not None}
+    quantities = {audit.reading: audit.prints for audit in each if audit.prints is not None}
     for i, audit in enumerate(each):  # a column that is half right in the quantity of another one
         if audit.prints is None:
             again = [_judged(table, [rows[i]], prints, reading) for reading, prints in quantities.items()]
             best = max(again, key=lambda one: one.close, default=audit)
             each[i] = best if best.close >= max(CLOSE * best.count, 1) else audit
-    entries = (
-        [replace(e, row=i) for i, audit in enumerate(each, 1) for e in audit.entries]
-        if len(each) > 1
-        else each[0].entries
-    )
-    readings = dict.fromkeys(audit.reading for audit in audits)
-    reasons = dict.fromkeys(filter(None, (audit.reason for audit in audits)))
-    return TableAudit(table, audits[0].prints, "; ".join(readings), tuple(entries), "; ".join(reasons))
+    return _joined(table, each)
+
+
+def _located_rows(model: Model, table: PrintedTable) -> list[_RowOfRoots]:
+    """Return the rows of a table with the roots of a model; rows with the same values share them."""
+    digits = max(map(significant, (e for row in table.rows for e in row.entries if e != GAP)), default=4)
+    longest = max(len(row.entries) for row in table.rows)
+    known: dict[tuple[tuple[str, ExactValue], ...], _Located] = {}
+    for row in table.rows:
+        known[row.values] = known.get(row.values) or _Located(model, table, row.values, longest, digits)
+    return [_RowOfRoots(known[row.values], row) for row in table.rows]
+
+
+def _joined(table: PrintedTable, each: Sequence[TableAudit]) -> TableAudit:
+    """Return what was found about a table whose rows were judged one by one, or together."""
+    if len(each) == 1:
+        return each[0]
+    read = [audit for audit in each if audit.prints is not None] or each[:1]
+    entries = tuple(replace(e, row=i) for i, audit in enumerate(each, 1) for e in audit.entries)
+    readings = dict.fromkeys(audit.reading for audit in read)
+    reasons = dict.fromkeys(filter(None, (audit.reason for audit in read)))
+    return TableAudit(table, read[0].prints, "; ".join(readings), entries, "; ".join(reasons))
 
 
 def _read(rows: Sequence[_RowOfRoots], table: PrintedTable) -> TableAudit:
@@ -499,27 +507,17 @@ def judge_array(array: Text, models: Sequence[Model]) -> TableAudit | None:
     has.
     """
     lists = [each for each in lists_of(cells_of(array)) if len(each.entries) >= FEWEST_ENTRIES]
+    rows = tuple(PrintedRow((), each.entries, array.span, each.heading) for each in lists)
     best: TableAudit | None = None
-    for model in models:
-        found = [audit for each in lists if (audit := _about(array, each, model)) is not None]
-        if found:
-            table = replace(found[0].table, rows=tuple(row for audit in found for row in audit.table.rows))
-            entries = tuple(replace(e, row=i) for i, audit in enumerate(found, 1) for e in audit.entries)
-            readings = dict.fromkeys(audit.reading for audit in found)
-            reasons = dict.fromkeys(audit.reason for audit in found if audit.reason)
-            joined = TableAudit(table, found[0].prints, "; ".join(readings), entries, "; ".join(reasons))
+    for model in models if rows else ():
+        table = PrintedTable("", model.transfer_functions[0], "poles", None, rows, span=array.span)
+        try:
+            each = [(one.row, _read([one], table)) for one in _located_rows(model, table)]
+        except SymflexError:  # a model without values has no roots
+            continue
+        about = [(row, audit) for row, audit in each if audit.prints is not None]
+        if about:
+            table = replace(table, name=about[0][0].heading, rows=tuple(row for row, _ in about))
+            joined = _joined(table, [replace(audit, table=table) for _, audit in about])
             best = max(filter(None, (best, joined)), key=lambda audit: audit.close)
     return best
-
-
-def _about(array: Text, given: PrintedList, model: Model) -> TableAudit | None:
-    """Return what is found about one list, None if it is not about the poles of a model."""
-    pairs = model.transfer_functions
-    rows = (PrintedRow((), given.entries, array.span, given.heading),)
-    try:
-        found = judge_table(
-            model, PrintedTable(given.heading, pairs[0], "poles", None, rows, span=array.span)
-        )
-    except SymflexError:  # a model without values has no roots
-        return None
-    return found if found.prints is not None else None

@@ -81,7 +81,7 @@ EXPLAINED = 1.5  # sum of squares per degree of freedom up to which noise explai
 EQUAL = 4.0  # sum of squares by which two minima describe the data equally well
 EQUAL_COEFFICIENTS = 1e-9  # relative distance of coefficients within which parameters are others of the same
 EDGE = 25.0  # ln p, or parameters over their scale, stay within this of their start
-LOST = 1e3  # standard error over the value from which on no value is told
+LOST = 1e3  # ratio of standard error to value above which no value is printed
 STRONG = 0.95  # correlation that is named
 WEAK = 0.5  # relative standard error from which a parameter is hardly determined by the data
 CONTRADICTED = 3.3  # standard deviations off what a spread says that noise exceeds once in a thousand cases
@@ -109,7 +109,7 @@ class Derived:
 
     name: str
     unit: str
-    # Of the values of all parameters to its value, and its derivatives in the free ones.
+    # Maps the values of all parameters to its value and its derivatives in the free ones.
     gradient: Callable[[Mapping[str, complex]], tuple[float, Real]]
 
 
