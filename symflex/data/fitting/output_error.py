@@ -215,7 +215,9 @@ class OutputError:
         outputs = []
         for records, one in zip(self.outputs, self.solve(dynamics), strict=True):
             pairs = zip(records, one.errors, strict=True)
-            outputs.append(tuple(r.filled(e).with_noise(e) for r, e in pairs))
+            outputs.append(
+                tuple(r.filled(e).with_noise(e, _gain(r, dynamics, one.coefficients)) for r, e in pairs)
+            )
         return replace(self, outputs=tuple(outputs))
 
     def filled(self, dynamics: PoleSet) -> OutputError:
@@ -325,12 +327,24 @@ def _of_lost(record: SampledRecord, dynamics: PoleSet, coefficients: Real) -> Re
     """Return what a unit error of the input adds, weighted, at each sample that was lost."""
     if record.measured is None or record.input is None:
         return None
-    driven = _RecordModel(record.struck(), dynamics).driven()
-    response = np.zeros(record.omega.size, np.complex128)
-    for column, c in zip(driven, coefficients, strict=False):
-        response = response + c * column
+    response = _struck(record, dynamics, coefficients)
     lost = np.flatnonzero(~record.measured)
     return record.weighted(response[:, np.newaxis] * record.back[:, np.newaxis] ** lost)
+
+
+def _struck(record: SampledRecord, dynamics: PoleSet, coefficients: Real) -> Complex:
+    """Return the spectrum of the output of a unit input at the first sample."""
+    response = np.zeros(record.omega.size, np.complex128)
+    for column, c in zip(_RecordModel(record.struck(), dynamics).driven(), coefficients, strict=False):
+        response = response + c * column
+    return response
+
+
+def _gain(record: SampledRecord, dynamics: PoleSet, coefficients: Real) -> Real | float:
+    """Return by how much errors of an input of few bits grow on each line; 0 for an input of many."""
+    if not record.rounding:
+        return 0.0
+    return np.asarray(np.sqrt(record.size) * np.abs(_struck(record, dynamics, coefficients)), np.float64)
 
 
 def _values(record: SampledRecord) -> int:

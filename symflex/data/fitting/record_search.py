@@ -27,7 +27,7 @@ from symflex.budget import entered_budget, spend
 from symflex.data.fitting.order import CLEAR
 from symflex.data.fitting.output_error import DEPENDENT, MOST_DAMPING, OutputError, PoleSet, Solved
 from symflex.data.fitting.resonances import NO_PEAK, Complex, Mask, Real
-from symflex.data.fitting.sampled_record import SampledRecord, autoregression, is_held
+from symflex.data.fitting.sampled_record import SampledRecord, autoregression, few_levels, is_held
 from symflex.data.measurement.measured_response import Samples
 
 Records = Sequence[tuple[Samples, ...]]
@@ -53,7 +53,6 @@ SLOW: Final = 6.0  # angle over the whole record below which a pole may lie at z
 SHARP: Final = 1e-3  # damping ratio below which a pair may be a steady sine
 MAINS: Final = (50.0, 60.0)  # Hz
 OFF_MAINS, MOST_HARMONICS = 1e-3, 20  # share by which their frequency may be off, harmonics that are named
-FEWEST_LEVELS, MOST_LEVELS, EVEN = 20, 300, 0.05  # of an input of few bits, and how even their gaps are
 NEAR_END: Final = 0.8  # share of half the sampling rate from which a mode may be an image of another
 MOST_LAGS, PORTMANTEAU, FOLLOWS = (
     40,
@@ -612,27 +611,14 @@ def described(
         sines.append(Sine(hertz, error, heights, _mains(hertz, error, problem.length_s)))
     sines.sort(key=lambda each: each.frequency_hz)
     warnings, poor = _doubts(problem, dynamics, solved)
-    if samples[0].input is not None and (levels := _levels(samples[0].input)):
-        said = f"the input has {levels} levels only, whose steps are errors that no standard error counts"
-        warnings.append(f"{said}: they may be too small")
+    if samples[0].input is not None and (levels := few_levels(samples[0].input)[0]):
+        said = f"the input has {levels} levels only: what its rounding adds to the output counts as noise"
+        warnings.append(said)
     return RecordTerms(
         hold_of(one), one.is_at_rest, one.input is not None, tuple(r.size for r in first), one.step_s,
         tuple(offsets), tuple(drifts) or None,
         tuple(sines), tuple(is_coloured), tuple(residuals), tuple(shares), tuple(warnings), tuple(poor),
     )  # fmt: skip
-
-
-def _levels(values: Real) -> int:
-    """Return how many levels a converter of few bits gave an input; 0 for many, or for few on purpose.
-
-    Levels of 8 bits are even: the gaps between neighbours are whole numbers of the smallest one.
-    """
-    levels = np.unique(values)
-    if not FEWEST_LEVELS <= levels.size <= MOST_LEVELS or levels.size > values.size // 2:
-        return 0
-    gaps = np.diff(levels)
-    steps = gaps / np.min(gaps)
-    return levels.size if np.max(np.abs(steps - np.round(steps))) < EVEN else 0
 
 
 def _mains(hertz: float, error: float, length_s: float) -> str:

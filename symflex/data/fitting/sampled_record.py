@@ -37,6 +37,8 @@ MOST_REGRESSORS: Final = 30  # of a disturbance whose colour is estimated
 SAMPLES_EACH: Final = 12  # samples that each of these takes at least
 FEW_LEVELS: Final = 3  # of a step or a square wave, whose input is held
 HELD: Final = 0.5  # share of samples equal to those before them from which an input is held
+FEWEST_LEVELS, MOST_LEVELS, EVEN = 20, 300, 0.05  # of an input of few bits, and how even their gaps are
+PARTED: Final = 6  # rounds in which a residual is parted into what an input's rounding adds, and the rest
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +56,7 @@ class SampledRecord:
     lines: Mask | None = None  # which of the lines above 0 Hz and below half the sampling rate; None for all
     noise: Real | None = None  # shape (lines,): standard deviation of a line; None for 1
     measured: Mask | None = None  # which samples of the output there are; the others hold a guess
+    rounding: float = 0.0  # standard deviation of the errors of an input of few bits
     # shape (2 lines, g): an orthonormal basis of what errors of the input add, weighted, at samples that were
     # lost; None to trust guesses.
     lost: Real | None = None
@@ -71,11 +74,14 @@ class SampledRecord:
         """Return the record of samples; without rest, the input must lead by the delay in whole samples."""
         y, u = samples.output, samples.input
         measured = None if samples.is_missing is None else ~samples.is_missing
+        rounding = 0.0 if u is None else few_levels(u)[1] / np.sqrt(12)
         if u is not None and is_at_rest:
             u = np.concatenate((np.full(lead, u[0]), u)) - u[0]
         elif lead:
             y, measured = y[lead:], None if measured is None else measured[lead:]
-        return SampledRecord(samples.step_s, y, u, lead, is_joined, is_smooth, is_at_rest, measured=measured)
+        return SampledRecord(
+            samples.step_s, y, u, lead, is_joined, is_smooth, is_at_rest, measured=measured, rounding=rounding
+        )
 
     @property
     def size(self) -> int:
@@ -222,15 +228,32 @@ class SampledRecord:
         pulse[self.lead] = 1.0
         return replace(self, input=pulse, is_at_rest=False, _inputs={})
 
-    def with_noise(self, residual: Complex) -> SampledRecord:
-        """Return the record with the noise that a residual shows: autoregressive, or white in a band."""
+    def with_noise(self, residual: Complex, gain: Real | float = 0.0) -> SampledRecord:
+        """Return the record with the noise that a residual shows: autoregressive, or white in a band.
+
+        ``gain`` is how much larger than its input a line of the output is: errors of an input of few bits,
+        which are white, pass through it. What they leave of the residual is what else disturbs the output
+        (its power is that expected of it, round after round: Dempster, Laird & Rubin, J. R. Stat. Soc. B 39,
+        1977).
+        """
+        by_input = np.broadcast_to(gain * self.rounding, residual.shape) ** 2
+        power = np.abs(residual) ** 2
+        left = np.full(residual.size, np.median(power) if by_input.any() else np.inf)
+        for _ in range(PARTED if by_input.any() else 1):
+            share = 1 / (1 + by_input / left)
+            expected = np.sqrt(share**2 + share * by_input / np.maximum(power, np.finfo(float).tiny))
+            left = self._smoothed(residual * expected)
+        return replace(self, noise=np.sqrt(left + by_input))
+
+    def _smoothed(self, residual: Complex) -> Real:
+        """Return the power of noise on the lines."""
         if self.lines is not None:
-            level = np.sqrt(np.mean(np.abs(residual) ** 2))
-            return replace(self, noise=np.full(self.omega.size, max(level, np.finfo(float).tiny)))
+            level = max(float(np.mean(np.abs(residual) ** 2)), np.finfo(float).tiny)
+            return np.full(self.omega.size, level)
         values = self.samples(residual)
         coefficients, variance = autoregression(values if self.measured is None else values[self.measured])
         response = sum(a * self.back**k for k, a in enumerate(coefficients))
-        return replace(self, noise=np.sqrt(variance) / np.abs(np.asarray(response)))
+        return np.asarray(variance / np.abs(np.asarray(response)) ** 2, np.float64)
 
     def filled(self, residual: Complex) -> SampledRecord:
         """Return the record with samples that are missing replaced by those of the model."""
@@ -258,6 +281,24 @@ def is_held(values: Real) -> bool:
     is_at_rest = values == np.median(values)
     acts = ~(is_at_rest[1:] & is_at_rest[:-1])
     return bool(np.mean(np.diff(values)[acts] == 0) > HELD)
+
+
+def few_levels(values: Real) -> tuple[int, float]:
+    """Return how many levels a converter of few bits gave an input, and their distance.
+
+    Both are 0 for many levels, and for few on purpose. Levels of 8 bits are even: the gaps between neighbours
+    are whole numbers of the smallest one.
+
+    >>> few_levels(np.round(np.sin(np.arange(200.0)), 1))[0]
+    21
+    """
+    levels = np.unique(values)
+    if not FEWEST_LEVELS <= levels.size <= MOST_LEVELS or levels.size > values.size // 2:
+        return 0, 0.0
+    gaps = np.diff(levels)
+    steps = gaps / np.min(gaps)
+    is_even = np.max(np.abs(steps - np.round(steps))) < EVEN
+    return (levels.size, float(np.ptp(levels) / np.sum(np.round(steps)))) if is_even else (0, 0.0)
 
 
 def autoregression(values: Real, most: int = MOST_REGRESSORS) -> tuple[Real, float]:

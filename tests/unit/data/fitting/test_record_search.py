@@ -120,7 +120,9 @@ def test_a_steady_sine_says_that_one_frequency_gives_one_value(tmp_path):
 def test_an_input_of_few_levels_is_said(tmp_path):
     _, u, y = of_mode(11)
     steps = np.ptp(u) / 100
-    assert "levels only" in " ".join(fitted(tmp_path, np.round(u / steps) * steps, y).warnings)
+    assert "levels only: what its rounding adds" in " ".join(
+        fitted(tmp_path, np.round(u / steps) * steps, y).warnings
+    )
     assert "levels" not in " ".join(fitted(tmp_path, u, y).warnings)
 
 

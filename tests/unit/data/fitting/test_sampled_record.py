@@ -65,3 +65,17 @@ def test_the_colour_of_noise_is_that_of_the_recursion_that_made_it():
     coefficients, variance = autoregression(values)
     assert np.allclose(coefficients, [1, -1.5, 0.8], atol=0.02)  # standard errors are 0.004
     assert abs(variance - 1) < 0.04
+
+
+def test_the_rounding_of_an_input_is_parted_from_other_noise():
+    # Errors of variance q^2/12 pass through a gain that has a peak; beside them the output has white noise.
+    random, n, sigma = np.random.default_rng(3), 4000, 0.2
+    u = np.round(random.standard_normal(n) / 0.05) * 0.05
+    record = SampledRecord.of(Samples(STEP, np.zeros(n), u), is_joined=False)
+    assert record.rounding == pytest.approx(0.05 / np.sqrt(12), rel=1e-9)
+    gain = np.abs(1e5 / (100**2 - record.omega**2 + 4j * record.omega))
+    errors = 0.05 * (random.random(n) - 0.5)
+    residual = gain * record.spectrum(errors) + record.spectrum(sigma * random.standard_normal(n))
+    noise = record.with_noise(residual, gain).noise
+    expected = np.hypot(sigma, gain * 0.05 / np.sqrt(12))
+    assert expected.max() > 10 * sigma and np.max(np.abs(noise / expected - 1)) < 0.1
