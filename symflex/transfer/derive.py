@@ -53,10 +53,17 @@ def derive(equations: Equations, output: str, source: str) -> TransferFunction:
 
 
 def derive_all(
-    equations: Equations, pairs: Sequence[tuple[str, str]], most: Terms | None = None
+    equations: Equations,
+    pairs: Sequence[tuple[str, str]],
+    most: Terms | None = None,
+    *,
+    in_base_lengths: bool = False,
 ) -> tuple[TransferFunction, ...]:
-    """Return transfer functions of one elimination; ``most`` refuses distributed systems earlier."""
-    workshop = _CramerQuotients(equations, most)
+    """Return transfer functions of one elimination; ``most`` refuses distributed systems earlier.
+
+    Kernels are of the lengths that each function is shortest in, or those all share ``in_base_lengths``.
+    """
+    workshop = _CramerQuotients(equations, most, in_base_lengths=in_base_lengths)
     derived = tuple(workshop.finish(output, source) for output, source in pairs)
     if not (workshop.is_sure or is_tapered(equations.model)):
         from symflex.transfer.named_coefficients import named_coefficients  # only with beams
@@ -64,7 +71,7 @@ def derive_all(
         # Common factors may be left; with names for coefficients others may be, once these are opened.
         named, kept = named_coefficients(equations)
         again = assemble(named, nested_transfer)
-        other = _CramerQuotients(again, most, equations, kept)
+        other = _CramerQuotients(again, most, equations, kept, in_base_lengths=in_base_lengths)
         derived = tuple(
             min(tf, other.finish(*pair), key=lambda t: sum(len(f) * abs(e) for f, e in t.ratio.factors))
             for tf, pair in zip(derived, pairs, strict=True)
@@ -110,8 +117,11 @@ class _CramerQuotients:
         most: Terms | None,
         origin: Equations | None = None,
         kept: Sequence[str] = (),
+        *,
+        in_base_lengths: bool = False,
     ) -> None:
         self._equations = equations
+        self._in_base_lengths = in_base_lengths
         self._most = most
         self._origin = origin or equations
         opened = None if most is None else most.opened
@@ -177,7 +187,8 @@ class _CramerQuotients:
         parameters = [*in_order_of_use(self._equations.model), *kept]
         ring = self._expansion.ring
         table = table.embedded(opened)
-        return KernelReduction(ring, table, parameters, propagation.coordinates, self._radicals)
+        lengths = () if self._in_base_lengths else propagation.coordinates
+        return KernelReduction(ring, table, parameters, lengths, self._radicals)
 
     def finish(self, name: str, source: str) -> TransferFunction:
         """Return the reduced transfer function ``num / den / divisor``."""

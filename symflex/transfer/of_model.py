@@ -121,6 +121,11 @@ def derive_nameless(
     return derive_from(equations_layer.assemble(model, nested_transfer, is_nameless=True), pairs, most)
 
 
+def derive_in_base_lengths(model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[TransferFunction, ...]:
+    """Return transfer functions whose kernels are of the same lengths, so that they can be added."""
+    return derive_from(assemble(model), pairs, in_base_lengths=True)
+
+
 def followed_along_x(tf: TransferFunction) -> TransferFunction:
     """Return a function of a model with members that taper, its uniform ones followed along x too."""
     equations = equations_layer.assemble(tf.model, nested_transfer, is_followed=True)
