@@ -15,10 +15,8 @@ LIBRARIES = {
     "pyuff",
     "scipy",
     "sympy",
-    "tree_sitter",
-    "tree_sitter_toml",
 }
-READING = {"click", "flint", "tree_sitter", "tree_sitter_toml"}
+READING = {"click", "flint"}
 LUMPED = "derivations/eppinger1988/rigid_body.toml"
 BEAM = "derivations/classics/pinned_pinned.toml"
 ALLOWED = [

@@ -1,26 +1,27 @@
 """What a specification holds: exact values, each with the place it was written.
 
-tomllib decodes them, and tree-sitter finds their places. Input: a valid document, its masked copy, and the
-map of its offsets to the source. Output: the root :class:`TableValue`. The masked copy is ASCII, so the byte
-offsets of tree-sitter are offsets in characters.
+tomllib decodes them; here their places are read, in the same order. Input: a valid document, its masked copy,
+and the map of its offsets to the source. Output: the root :class:`TableValue`. What tomllib accepted is TOML,
+so that its masked copy, whose strings are ``x``, needs a few patterns and no grammar.
 """
 
 from __future__ import annotations
 
 import datetime
+import re
 import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any, TypeAlias
-
-import tree_sitter_toml
-from tree_sitter import Language, Node, Parser
+from typing import Any, NoReturn, TypeAlias
 
 from symflex.errors import Diagnostic, Source, Span, SpecError, Text
-from symflex.model.spec.scan import quote_width
+from symflex.model.spec.scan import BLANK, quote_width
 
-_TOML = Language(tree_sitter_toml.language())
+_STRING = r"""\"{3}x*+\"{3}|'{3}x*+'{3}|"x*+"|'x*+'"""  # in a masked copy
+_KEY_PART = re.compile(rf"[A-Za-z0-9_\-]++|{_STRING}")
+_SCALAR = re.compile(rf"{_STRING}|[0-9-]{{10}} [0-9:.+Z-]++|[^\s,\]}}#=\[{{]++")
+_BLANK_ON_LINE = re.compile(r"[ \t]*+")
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,105 +80,140 @@ def _frozen(value: _Table | _Tables | Value) -> Value:
 
 
 def locate(document: Document, decoded: Mapping[str, Any]) -> TableValue:
-    """Give every value that tomllib made of a text its place, floats being :class:`Literal`."""
-    # Raises SpecError: SF101 where tomllib accepts what is not TOML 1.0 (it is newer in later Pythons).
-    tree = Parser(_TOML).parse(document.masked.encode("ascii"))
-    if tree.root_node.has_error:
-        span = _PositionReader(document).span(_first_error(tree.root_node))
-        raise SpecError(Diagnostic("SF101", "this is not TOML 1.0", span))
-    return _PositionReader(document).root(tree.root_node, decoded)
+    """Give every value that tomllib made of a text its place, floats being :class:`Literal`.
+
+    Raises SpecError: SF101 where tomllib accepts what is not TOML 1.0 (it is newer in later Pythons).
+    """
+    return _PositionReader(document).root(decoded)
 
 
-def _first_error(node: Node) -> Node:
-    for child in node.children:
-        if child.is_error or child.is_missing:
-            return child
-        if child.has_error:
-            return _first_error(child)
-    return node
-
-
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class _PositionReader:
+    """A place in a document, which goes on as tables, keys and values are read."""
+
     document: Document
+    at: int = 0
 
-    def span(self, node: Node) -> Span:
-        start = self.document.origin(node.start_byte)
-        return Span(self.document.source, start, max(start, self.document.origin(node.end_byte)))
+    def span(self, start: int) -> Span:
+        first = self.document.origin(start)
+        return Span(self.document.source, first, max(first, self.document.origin(self.at)))
 
-    def raw(self, node: Node) -> str:
-        return self.document.text[node.start_byte : node.end_byte]
+    def refuse(self) -> NoReturn:
+        start, self.at = self.at, self.at + 1
+        raise SpecError(Diagnostic("SF101", "this is not TOML 1.0", self.span(start)))
 
-    def root(self, root: Node, decoded: Mapping[str, Any]) -> TableValue:
+    def skip(self, pattern: re.Pattern[str]) -> str:
+        """Go on behind a pattern; return the next character, or nothing at the end."""
+        if (match := pattern.match(self.document.masked, self.at)) is None:
+            self.refuse()
+        self.at = match.end()
+        return self.document.masked[self.at : self.at + 1]
+
+    def take(self, mark: str) -> None:
+        if not self.document.masked.startswith(mark, self.at):
+            self.refuse()
+        self.at += len(mark)
+
+    def root(self, decoded: Mapping[str, Any]) -> TableValue:
         top = _Table(Span(self.document.source, 0, 0))
+        self.fill(top, decoded)
         adopted = []
-        for node in root.named_children:
-            if node.type == "pair":
-                self.pair(top, node, decoded)
-            elif node.type in {"table", "table_array_element"}:
-                parts = self.key_parts(self.parts(node)[0])
-                if parts[0][0] in self.document.adopted:
-                    adopted.append((node, parts[0][0]))
-                    continue
-                repeated = node.type == "table_array_element"
-                self.fill(node, *_enter(top, parts, self.header(node), decoded, repeated=repeated))
+        while self.at < len(self.document.masked):
+            start = self.at
+            repeated = self.document.masked.startswith("[[", start)
+            self.take("[[" if repeated else "[")
+            parts = self.key()
+            self.take("]]" if repeated else "]")
+            header = self.span(start)
+            name = parts[0][0]
+            if name in self.document.adopted:
+                adopted.append((self.at, name, header))
+                self.fill(_Table(header), decoded[name])
+            else:
+                self.fill(*_enter(top, parts, header, decoded, repeated=repeated))
         # Last, for until then the tables are step by step those tomllib has.
-        for node, name in adopted:
-            self.fill(node, _adopt(top, self.document.adopted[name], self.header(node)), decoded[name])
+        for body, name, header in adopted:
+            self.at = body
+            self.fill(_adopt(top, self.document.adopted[name], header), decoded[name])
         return top.freeze()
 
-    def parts(self, node: Node) -> list[Node]:
-        return [child for child in node.named_children if child.type != "comment"]
+    def fill(self, table: _Table, decoded: Mapping[str, Any]) -> None:
+        """Read pairs up to the next header."""
+        while self.skip(BLANK) not in {"", "["}:
+            self.pair(table, decoded)
 
-    def header(self, node: Node) -> Span:
-        closing = next(child for child in node.children if child.type in {"]", "]]"})
-        return Span(self.document.source, self.span(node).start, self.span(closing).end)
+    def key(self) -> list[tuple[str, Span]]:
+        """Read a key with the blanks around it; return its parts."""
+        parts = []
+        while True:
+            self.skip(_BLANK_ON_LINE)
+            start = self.at
+            self.skip(_KEY_PART)
+            parts.append((decode_key(self.document.text[start : self.at]), self.span(start)))
+            if self.skip(_BLANK_ON_LINE) != ".":
+                return parts
+            self.at += 1
 
-    def fill(self, node: Node, table: _Table, decoded: Mapping[str, Any]) -> None:
-        for child in self.parts(node)[1:]:
-            self.pair(table, child, decoded)
-
-    def pair(self, table: _Table, node: Node, decoded: Mapping[str, Any]) -> None:
-        key, value = self.parts(node)
-        *outer, (name, span) = self.key_parts(key)
+    def pair(self, table: _Table, decoded: Mapping[str, Any]) -> None:
+        *outer, (name, span) = self.key()
+        self.take("=")
+        self.skip(_BLANK_ON_LINE)
+        inner: _Table | None = table
         for part, part_span in outer:
-            table.add(part, part_span, _Table(part_span))
-            inner = table.entries[part][1]
-            if not isinstance(inner, _Table):
-                return
-            table, decoded = inner, decoded[part]
-        table.add(name, span, self.value(value, decoded[name], span))
+            decoded = decoded[part]
+            if inner is not None:
+                inner.add(part, part_span, _Table(part_span))
+                entry = inner.entries[part][1]
+                inner = entry if isinstance(entry, _Table) else None
+        value = self.value(decoded[name], span)
+        if inner is not None:
+            inner.add(name, span, value)
 
-    def key_parts(self, node: Node) -> list[tuple[str, Span]]:
-        if node.type == "dotted_key":
-            return [part for child in node.named_children for part in self.key_parts(child)]
-        return [(decode_key(self.raw(node)), self.span(node))]
-
-    def value(self, node: Node, decoded: object, key: Span | None) -> Value:
-        span = self.span(node)
+    def value(self, decoded: object, key: Span | None) -> Value:
+        start = self.at
+        if isinstance(decoded, list):
+            items = []
+            self.take("[")
+            for item in decoded:
+                self.skip(BLANK)
+                items.append(self.value(item, None))
+                if self.skip(BLANK) == ",":
+                    self.at += 1
+            self.skip(BLANK)
+            self.take("]")
+            return ArrayValue(tuple(items), self.span(start))
+        if isinstance(decoded, dict):
+            table = _Table(key or self.span(start))
+            self.take("{")
+            if self.skip(_BLANK_ON_LINE) != "}":
+                self.pair(table, decoded)
+                while self.skip(_BLANK_ON_LINE) == ",":
+                    self.at += 1
+                    self.pair(table, decoded)
+            self.take("}")
+            table.span = key or self.span(start)
+            return table.freeze()
+        self.skip(_SCALAR)
+        span = self.span(start)
         if span.start in self.document.invalid:
             return OtherValue("invalid", self.document.invalid[span.start])
+        return self.scalar(decoded, start, span)
+
+    def scalar(self, decoded: object, start: int, span: Span) -> Value:
+        raw = self.document.text[start : self.at]
         match decoded:
             case str():
-                return StringValue(self.text(node, span, decoded), span)
+                quotes = quote_width(self.document.text, start, self.at)
+                return StringValue(_text(raw[quotes:-quotes], quotes, span, decoded), span)
             case bool():
                 return BooleanValue(decoded, span)
             case int():
-                return NumberValue(Fraction(decoded), self.raw(node), span)
+                return NumberValue(Fraction(decoded), raw, span)
             case Literal(text):
                 kind = text.lstrip("+-")
                 if kind in {"inf", "nan"}:
                     return OtherValue(kind, span)
                 return NumberValue(Fraction(text.replace("_", "")), text, span)
-            case list():
-                items = zip(self.parts(node), decoded, strict=True)
-                return ArrayValue(tuple(self.value(item, each, None) for item, each in items), span)
-            case dict():
-                table = _Table(key or span)
-                for child in node.named_children:
-                    if child.type == "pair":
-                        self.pair(table, child, decoded)
-                return table.freeze()
             case datetime.datetime():
                 return OtherValue("date-time", span)
             case datetime.date():
@@ -185,15 +221,14 @@ class _PositionReader:
             case _:
                 return OtherValue("time", span)
 
-    def text(self, node: Node, span: Span, decoded: str) -> Text:
-        quotes = quote_width(self.document.text, node.start_byte, node.end_byte)
-        raw = self.raw(node)[quotes:-quotes]
-        skipped = 0
-        if quotes > 1:
-            # TOML drops a line end directly after opening triple quotes.
-            skipped = 2 if raw.startswith("\r\n") else int(raw.startswith("\n"))
-        inside = Span(span.source, span.start + quotes + skipped, span.end - quotes)
-        return Text(decoded, inside, verbatim=raw[skipped:] == decoded)
+
+def _text(raw: str, quotes: int, span: Span, decoded: str) -> Text:
+    skipped = 0
+    if quotes > 1:
+        # TOML drops a line end directly after opening triple quotes.
+        skipped = 2 if raw.startswith("\r\n") else int(raw.startswith("\n"))
+    inside = Span(span.source, span.start + quotes + skipped, span.end - quotes)
+    return Text(decoded, inside, verbatim=raw[skipped:] == decoded)
 
 
 def decode_key(raw: str) -> str:

@@ -42,7 +42,7 @@ def _token(strings: str) -> re.Pattern[str]:
 
 
 _TOKEN = _token(_BLOCK_STRING + _LINE_STRING)
-_BLANK = re.compile(r"(?:[ \t\r\n]++|\#[^\n]*+)*+")
+BLANK = re.compile(r"(?:[ \t\r\n]++|\#[^\n]*+)*+")
 # Few texts need these three: they are compiled where they are used, so that the others do not wait.
 _KEY_LINE = rf"[ \t]*+{KEY}[ \t]*+="
 # A line that is a header and cannot be an array's item: its first key part is not a value.
@@ -245,7 +245,7 @@ def scan(source: Source) -> Scan:
 
 
 def _blank_end(text: str, offset: int) -> int:
-    blank = _BLANK.match(text, offset)
+    blank = BLANK.match(text, offset)
     return blank.end() if blank else offset
 
 
