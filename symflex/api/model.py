@@ -65,7 +65,7 @@ class Model:
     Parameters
     ----------
     parameters, definitions, elements, signals, equations, operating_point, energy : mapping
-    blocks, fields, inputs, outputs, analysis, figures, drawing, published, notation, tables : mapping
+    blocks, fields, inputs, outputs, analysis, figures, drawing, ports, published, notation, tables : mapping
         The tables of the specification language, as Python mappings of the same shape.
     title, source : str
         What the model is and where it comes from.
@@ -108,6 +108,7 @@ class Model:
         analysis: Table | None = None,
         figures: Table | None = None,
         drawing: Table | None = None,
+        ports: Table | None = None,
         published: Table | None = None,
         notation: Table | None = None,
         tables: Table | None = None,

@@ -2,6 +2,7 @@
 
 from symflex.model.model import (
     Analysis,
+    ContactPort,
     Definition,
     DrawingHints,
     ExactValue,

@@ -22,7 +22,7 @@ from symflex.quantities import looks_like_quantity
 FORMAT_VERSION = 1
 SECTIONS = tuple(
     "parameters definitions elements inputs outputs signals equations operating_point energy blocks fields "
-    "published notation tables analysis figures drawing".split()
+    "ports published notation tables analysis figures drawing".split()
 )
 TOP_KEYS = ("symflex", "title", "source", "doc", *SECTIONS)
 CONSEQUENCES = ("SF210", "SF218")  # what is noted of a name that was lost with a mistake elsewhere

@@ -302,6 +302,16 @@ class Input:
 
 
 @dataclass(frozen=True, slots=True)
+class ContactPort:
+    """Where the machine is touched: a node, or two, the second for the reaction."""
+
+    name: str
+    nodes: tuple[NodeReference, ...]
+    domain: Domain  # one of :data:`PORT_PAIRS`
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Output:
     """A named expression of nodes, signals, element quantities and inputs."""
 
@@ -447,6 +457,7 @@ class Model:
     source: str = ""
     analysis: Analysis = Analysis()
     figures: tuple[Figure, ...] = ()
+    ports: tuple[ContactPort, ...] = ()
     drawing: DrawingHints = DrawingHints()
     published: tuple[Published, ...] = ()
     notation: tuple[tuple[str, str], ...] = ()  # symbols of a paper, as typed in LaTeX, and their names here
@@ -609,3 +620,24 @@ INPUT_KINDS: dict[str, InputKind] = {
     "angular_acceleration": InputKind("rotation", "rad/s^2", 2),
 }
 """Every kind but a free signal, which acts on no node."""
+
+
+@dataclass(frozen=True, slots=True)
+class DualPair:
+    """Two quantities whose product is a power."""
+
+    effort: str
+    flow: str
+    units: tuple[str, str]  # of both
+    # Kinds of inputs: what is delivered into a node, and what nodes follow.
+    delivered: str
+    imposed: str
+
+
+PORT_PAIRS: dict[str, DualPair] = {
+    "translation": DualPair("force", "velocity", ("N", "m/s"), "force", "velocity"),
+    "rotation": DualPair("torque", "angular velocity", ("N*m", "rad/s"), "torque", "angular_velocity"),
+    "electrical": DualPair("voltage", "current", ("V", "A"), "current", "voltage"),
+    "acoustic": DualPair("pressure", "flow", ("Pa", "m^3/s"), "flow", "pressure"),
+}
+"""By domain; temperature and heat flow are none."""

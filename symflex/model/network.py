@@ -275,7 +275,7 @@ def _references(
         message = f"{what} takes {counted(wanted, 'node')}, found {len(texts)}"
         reader.note("SF217", message, entry_given.value.span, hint)
         return None
-    references = [_reference(reader, t, port.domain, what) for t in texts]
+    references = [read_reference(reader, t, port.domain, what) for t in texts]
     kept = tuple(r for r in references if r is not None)
     if len(kept) < len(texts):
         return None
@@ -312,7 +312,8 @@ def _as_ports(table: TableValue, element: Element) -> str | None:
     return None
 
 
-def _reference(reader: Reader, text: Text, domain: PortDomain, what: str) -> NodeReference | None:
+def read_reference(reader: Reader, text: Text, domain: PortDomain, what: str) -> NodeReference | None:
+    """Return the node, or the part of a planar node, that a text names; what is wrong is noted."""
     node, dot, component = text.value.partition(".")
     good = NAME.match(node) and (not dot or component in COMPONENT_DOMAIN)
     if not good or (dot and node == "ground"):
@@ -370,7 +371,7 @@ def _read_input(reader: Reader, entry: KeyValue) -> DraftInput | None:
         message = f"{what} acts on one node, or on one with its reaction on a second, found {len(texts)}"
         reader.note("SF217", message, attachment.value.span)
         return None
-    references = [_reference(reader, t, law.domain, what) for t in texts]
+    references = [read_reference(reader, t, law.domain, what) for t in texts]
     kept = tuple(r for r in references if r is not None)
     if len(kept) != len(texts):
         return None

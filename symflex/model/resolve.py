@@ -215,6 +215,10 @@ def _with_requests(
             map(cycles.printed, read_published(requests, sections["published"], model, notation))
         ),
     )
+    if sections["ports"]:
+        from symflex.model.ports import read_ports  # few models have one
+
+        model = replace(model, ports=read_ports(hints, sections["ports"], model))
     if sections["tables"]:
         from symflex.model.printed_tables import read_tables  # few models have one
 

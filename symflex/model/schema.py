@@ -63,6 +63,7 @@ def json_schema() -> Schema:
         "energy": _energy(),
         "blocks": _table(_block(), "transfer functions that are factors in expressions", FREE_NAMES),
         "fields": _table(_field(), "boundary-value problems"),
+        "ports": _table(_contact_port(), "where the machine is touched"),
         "published": {
             "type": "object",
             "description": "printed formulas",
@@ -246,6 +247,12 @@ def _field() -> Schema:
     }
     either = [{"required": ["equation"]}, {"required": ["equations"]}]
     return {**_closed(_labelled(keys), ["domain", "conditions"]), "oneOf": either}
+
+
+def _contact_port() -> Schema:
+    at = {"anyOf": [NODE, _several(1, 2)]}
+    said = _said(at, "node that is touched, or two, the second for the reaction")
+    return _closed({"at": said, "doc": TEXT}, ["at"])
 
 
 def _printed() -> Schema:

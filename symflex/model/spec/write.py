@@ -13,7 +13,7 @@ from symflex.errors import Diagnostic, SpecError
 from symflex.model.spec.positions import Literal
 from symflex.model.spec.read import MAX_LITERAL, MAX_NESTING, number_problem
 
-INLINE_SECTIONS: Final = frozenset({"parameters", "elements", "inputs", "outputs", "blocks"})
+INLINE_SECTIONS: Final = frozenset({"parameters", "elements", "inputs", "outputs", "blocks", "ports"})
 
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 _NOT_LITERAL = re.compile(r"[\x00-\x08\x0a-\x1f\x7f']")
@@ -28,9 +28,9 @@ _BITS_PER_DIGIT = 3.3219280948873626  # log2(10)
 def write(mapping: Mapping[str, object]) -> str:
     """Render nested values as the text that :func:`symflex.model.spec.parse` reads as the mapping."""
     # The two outer levels become ``[a]`` and ``[a.b]`` headers; what is deeper, and what stands in
-    # `parameters`, `elements`, `inputs`, `outputs` and `blocks`, becomes inline tables. Values are str, int,
-    # Fraction, Decimal, float, literals, bool, list, tuple, arrays of numpy, expressions of SymPy, and
-    # mappings of these; a fraction that is not a finite decimal becomes the string ``"p/q"``.
+    # `parameters`, `elements`, `inputs`, `outputs`, `blocks` and `ports`, becomes inline tables. Values are
+    # str, int, Fraction, Decimal, float, literals, bool, list, tuple, arrays of numpy, expressions of SymPy,
+    # and mappings of these; a fraction that is not a finite decimal becomes the string ``"p/q"``.
     return "\n".join(
         block.header + "".join(f"{entry.key} = {entry.value}\n" for entry in block.entries)
         for block in blocks(mapping)

@@ -1,0 +1,144 @@
+"""The machine where it is touched: its driving-point function, and the machine with an element put there.
+
+Input: a model and one of its ports. Output: a model with an input more and one output, whose transfer
+function is the driving-point function; or a model with one element more.
+
+A port is free unless something is attached: all inputs of the machine are zero, what is imposed stands still.
+What is delivered into the node (force, torque, current, flow) drives it, and the partner answers::
+
+    mass m on a spring k and a damper b, touched at its node    v/f = s/(m*s^2 + b*s + k)
+
+With ``is_imposed`` the partner drives, and what has to be delivered answers: ``f/v``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container, Mapping
+from dataclasses import replace
+from fractions import Fraction
+from itertools import chain, count
+
+from symflex.algebra import LAPLACE
+from symflex.expressions import Attribute, Expression, Name, negative, number, product_of, sum_of
+from symflex.library.elements import ELEMENTS, THROUGH_NAME
+from symflex.model import ContactPort, Input, Model, NodeReference, Output, PlacedElement, scope_of
+from symflex.model.model import INPUT_KINDS, PORT_PAIRS
+from symflex.model.network import variable_of
+from symflex.quantities import unit_of
+
+RATES = {"translation": "v", "rotation": "omega", "electrical": "v", "acoustic": "p"}
+"""What answers what is delivered, as formulas call it."""
+
+
+def at_port(model: Model, port: ContactPort, *, is_imposed: bool = False) -> tuple[Model, tuple[str, str]]:
+    """Return a model that is driven at a port, and its driving-point function as (output, input)."""
+    model, port = _with_clear_nodes(model, port)
+    taken, written = _taken(model), port.name.replace(".", "_")
+    through, rate = (
+        _free(f"{name}_{written}", taken) for name in (THROUGH_NAME[port.domain], RATES[port.domain])
+    )
+    pair = PORT_PAIRS[port.domain]
+    delivered, followed = INPUT_KINDS[pair.delivered], INPUT_KINDS[pair.imposed]
+    if is_imposed:
+        reaction = Attribute(rate, followed.quantity)
+        source = Input(rate, pair.imposed, port.nodes, unit_of(followed.unit).dimension, followed.unit)
+        answer = Output(through, reaction, unit_of(delivered.unit).dimension, delivered.unit)
+    else:
+        moved = product_of([*[Name(LAPLACE)] * (followed.order or 0), _across(model, port)])
+        source = Input(through, pair.delivered, port.nodes, unit_of(delivered.unit).dimension, delivered.unit)
+        answer = Output(rate, moved, unit_of(followed.unit).dimension, followed.unit)
+    pair_of_names = answer.name, source.name
+    quotient = unit_of(answer.unit).dimension / unit_of(source.unit).dimension
+    driven = replace(
+        model,
+        inputs=(*model.inputs, source),
+        outputs=(answer,),
+        quotients=((pair_of_names, quotient),),
+        figures=(),
+        published=(),
+        tables=(),
+    )
+    return driven, pair_of_names
+
+
+def with_branch(
+    model: Model, port: ContactPort, type_name: str, values: Mapping[str, Expression], name: str
+) -> Model:
+    """Return a model with a two-terminal element from a port to its second node or to ground.
+
+    An element at a single node, such as a mass, goes to the port's node. ``name`` is changed where it is
+    taken. Values are in SI units.
+    """
+    element = ELEMENTS[type_name]
+    (attached,) = element.ports
+    ends = (*port.nodes, NodeReference("ground"))[: attached.terminals]
+    given = {p.name: number(Fraction(p.default)) for p in element.parameters if p.default is not None}
+    use = PlacedElement(
+        _free(name, _taken(model)),
+        element,
+        ((attached.name, ends),),
+        ((attached.name, port.domain),),
+        tuple({**given, **values}.items()),
+    )
+    return replace(model, elements=(*model.elements, use))
+
+
+def _across(model: Model, port: ContactPort) -> Expression:
+    """Return the across quantity at a port: that of the first node, less that of the second."""
+    nodes = {n.name: n for n in model.nodes}
+    terms: list[Expression] = []
+    for i, reference in enumerate(port.nodes):
+        if reference.is_ground:
+            continue
+        variable = variable_of(reference, nodes[reference.node], port.domain)
+        term: Expression = Name(variable.owner)
+        if variable.component:
+            term = Attribute(variable.owner, variable.component)
+        terms.append(negative(term) if i else term)
+    return sum_of(terms)
+
+
+def _with_clear_nodes(model: Model, port: ContactPort) -> tuple[Model, ContactPort]:
+    """Return a model in which a port's nodes have names that mean nothing else.
+
+    A node may share its name with a parameter, say: then no expression names the node.
+    """
+    scope = scope_of(model)
+    components = {n.name: n.components for n in model.nodes}
+    for reference in port.nodes:
+        if reference.is_ground or components[reference.node] != ("",):
+            continue
+        if len(scope.meanings.get(reference.node, ())) > 1:
+            new = _free(f"{reference.node}_node", _taken(model))
+            model, port = _renamed(model, port, reference.node, new)
+    return model, port
+
+
+def _renamed(model: Model, port: ContactPort, old: str, new: str) -> tuple[Model, ContactPort]:
+    def names(references: tuple[NodeReference, ...]) -> tuple[NodeReference, ...]:
+        return tuple(replace(r, node=new) if r.node == old else r for r in references)
+
+    return (
+        replace(
+            model,
+            nodes=tuple(replace(n, name=new) if n.name == old else n for n in model.nodes),
+            elements=tuple(
+                replace(e, nodes=tuple((p, names(r)) for p, r in e.nodes)) for e in model.elements
+            ),
+            inputs=tuple(replace(i, nodes=names(i.nodes)) for i in model.inputs),
+            ports=tuple(replace(p, nodes=names(p.nodes)) for p in model.ports),
+        ),
+        replace(port, nodes=names(port.nodes)),
+    )
+
+
+def _taken(model: Model) -> Container[str]:
+    """Return every name of a model."""
+    scope = scope_of(model)
+    outputs = (o.name for o in model.outputs)
+    return {*scope.meanings, *scope.owners, *outputs, *scope.unknowns, *(e.name for e in model.elements)}
+
+
+def _free(name: str, taken: Container[str]) -> str:
+    """Return a name that nothing has: this one, or with a number."""
+    return next(n for n in chain((name,), (f"{name}_{i}" for i in count(2))) if n not in taken)
