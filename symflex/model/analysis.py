@@ -40,7 +40,7 @@ from symflex.quantities import IMAGINARY_NAMES, Quantity, unit_of
 if TYPE_CHECKING:
     from symflex.model.model import Model, ModelParameter, NamedExpressions
     from symflex.model.reading import Reader
-    from symflex.papers.formula import PaperNotation
+    from symflex.papers.symbols import PaperNotation
 
 ANALYSIS_KEYS = ("band", "data_end", "modes", "digits", "print", "prefer")
 FIGURE_KEYS = ("kind", "of", "gain", "over", "range", "band", "until", "at", "data", "title", "doc")
@@ -348,7 +348,7 @@ def read_notation(reader: Reader, section: TableValue | None, model: Model) -> t
     """Return the symbols of a paper, as they are typed in LaTeX, with the names they have in the model."""
     if section is None:
         return ()
-    from symflex.papers.formula import symbol_of_latex  # few specifications hold LaTeX
+    from symflex.papers.symbols import symbol_of_latex  # few specifications hold LaTeX
 
     tied: list[tuple[str, str]] = []
     known = {LAPLACE, "pi", *(name for name, _ in labelled_names(model))}
@@ -376,7 +376,7 @@ def notation_of_model(
     model: Model, symbols: Iterable[tuple[str, str]], printed: Iterable[str] = ()
 ) -> PaperNotation:
     """Return what the symbols of a paper mean; ``printed`` are names that the formula's own lines give."""
-    from symflex.papers.formula import notation_of  # few specifications hold LaTeX
+    from symflex.papers.symbols import notation_of  # few specifications hold LaTeX
 
     varying = {item.name for group in (model.outputs, model.inputs) for item in group}
     named = [*labelled_names(model), *((name, "") for name in printed)]

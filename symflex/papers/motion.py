@@ -33,8 +33,10 @@ from symflex.expressions import (
     names,
     number,
 )
-from symflex.papers.formula import LAPLACE, Matrix, PaperNotation, PrintedSymbol, defined_symbol, read_value
+from symflex.papers.formula import defined_symbol, read_value
+from symflex.papers.matrices import Matrix
 from symflex.papers.source import Paper, PrintedEquation, refusal, statements, text_of, written
+from symflex.papers.symbols import LAPLACE, PaperNotation, PrintedSymbol
 
 GAP: Final = "# GAP:"
 FORCES: Final = ("F", "f", "u", "U", "tau", "T", "M", "Q", "V", "v", "i", "I", "w", "q", "p", "r", "d")

@@ -55,16 +55,10 @@ from symflex.expressions import (
 )
 from symflex.model import Model, Published
 from symflex.model.analysis import notation_of_model, readable_names, with_candidates
-from symflex.papers.formula import (
-    PaperNotation,
-    PrintedSymbol,
-    defined_symbol,
-    definition,
-    in_laplace,
-    laplace_of,
-    read_formula,
-)
+from symflex.papers.formula import defined_symbol, definition, read_formula
+from symflex.papers.laplace import in_laplace, laplace_of
 from symflex.papers.source import Paper, PrintedEquation, statements, written
+from symflex.papers.symbols import PaperNotation, PrintedSymbol
 from symflex.print.label import labels_of
 from symflex.print.latex import latex_expression, model_labels
 from symflex.report.document import Badge, Block, Code, Section, Tone, labelled, marked, text

@@ -20,9 +20,11 @@ from symflex.expressions import (
     quotient,
     sum_of,
 )
-from symflex.papers.formula import PrintedSymbol, evaluated, notation_of, read_latex, symbol_of_latex
+from symflex.papers.formula import evaluated, read_latex
+from symflex.papers.symbols import notation_of
 from symflex.print.label import labels_of
 from symflex.print.latex import latex_expression
+from tests.unit.papers.reading import read
 
 # LaTeX, the names that are known, the same formula in the grammar of specifications.
 READ = (
@@ -66,10 +68,6 @@ READ = (
     (r"{\rm e}^{-sT} + \mathrm{e}^{a} + \exp\left(-\frac{s}{b}\right)", "", "exp(-s*T)+exp(a)+exp(-s/b)"),
     (r"s\tau/2 + a\over b", "", "(s*tau/2+a)/b"),
 )  # fmt: skip
-
-
-def read(latex: str, known: str = "") -> Expression:
-    return read_latex(Text.alone("paper.tex", latex), notation_of([(n, "") for n in known.split()]))[0]
 
 
 def test_printed_formulas_are_read_as_a_person_reads_them() -> None:
@@ -148,14 +146,6 @@ def test_what_print_leaves_open_is_refused_with_its_place(latex: str) -> None:
     assert problem.span.source.name == "paper.tex"
 
 
-def test_words_in_a_formula_are_names_and_never_lost() -> None:
-    assert format_expression(read(r"G = \text{proportional gain}\cdot s")) == "proportionalgain*s"
-    assert format_expression(read(r"G = K\mathrm{a} s")) == "K*a*s"
-    assert format_expression(read(r"G = V\text{in}")) == "V*in"
-    assert format_expression(read(r"G = a \text{ (rad/s)}")) == "a"
-    assert format_expression(read(r"G = a\;{\rm where}\; a = b")) == "a"
-
-
 def test_both_readings_are_in_the_message() -> None:
     with pytest.raises(SpecError, match=r"two ways: 1/2\*k or 1/\(2\*k\)"):
         read("1/2k")
@@ -163,42 +153,6 @@ def test_both_readings_are_in_the_message() -> None:
 
 def test_readings_that_agree_are_one_formula() -> None:
     assert format_expression(read(r"s\tau/2")) == "s*tau/2"
-
-
-UNREAD = (
-    (r"\sum_{i=1}^{n} a_i", 1, "whose ends are not numbers"),
-    (r"a+\cdots+b", 3, "an ellipsis"),
-    (r"b + |x|", 5, "a magnitude"),
-    (r"\begin{cases} a & x>0 \\ b & x<0\end{cases}", 1, "a distinction of cases"),
-    (r"a \approx b", 3, "nearly"),
-    (r"k_{1,2}+k_{12}", 9, "two symbols would both be 'k_12'"),
-    (r"\mathbf{K}+K", 12, "two symbols would both be 'K'"),
-    (r"(a+b", 1, "never closed"),
-    (r"\frac{a}", 8, "an argument is missing"),
-    (r"a_{b", 3, "never closed"),
-    (r"0.1\,\mathrm{s}\cdot s", 6, "may be a unit"),
-    (r"1,5", 3, "more than one formula"),
-    (r"\omega^2 + j", 12, "does not vanish"),
-    (r"\input{secrets}", 1, "not read here"),
-    (r"R\text{ s}", 2, "may be a unit"),
-    ("5e-3", 2, "may be a power of ten"),
-)
-
-
-@pytest.mark.parametrize(("latex", "column", "said"), UNREAD)
-def test_what_is_not_understood_is_refused_at_its_place(latex: str, column: int, said: str) -> None:
-    with pytest.raises(SpecError) as caught:
-        read(latex)
-    (problem,) = caught.value.diagnostics
-    assert said in problem.message
-    assert problem.span is not None
-    assert problem.span.column == column
-
-
-def test_letters_that_the_known_names_cut_in_two_ways_are_refused() -> None:
-    with pytest.raises(SpecError, match="two ways"):
-        read("EI", "EI E I")
-    assert format_expression(read("EI", "E I")) == "E*I"
 
 
 def test_a_parameter_before_the_laplace_variable_in_brackets_may_be_a_product() -> None:
@@ -218,18 +172,3 @@ def test_definitions_after_where_are_lines() -> None:
         "a": "sqrt(b/c)",
         "p": "s/a",
     }
-
-
-def test_symbols_of_labels_are_those_of_print() -> None:
-    assert symbol_of_latex(Text.alone("label", r"\omega_{\mathrm{n}}")) == PrintedSymbol("omega", "", "n")
-    assert symbol_of_latex(Text.alone("label", r"\hat{x}_1'")) == PrintedSymbol("x", "hat_p", "1")
-    assert symbol_of_latex(Text.alone("label", r"a+b")) is None
-
-
-def test_nesting_and_length_are_bounded() -> None:
-    with pytest.raises(SpecError, match="nested too deeply"):
-        read("(" * 500 + "a" + ")" * 500)
-    with pytest.raises(SpecError, match="at most 20000"):
-        read("a+" * 20_000)
-    with pytest.raises(SpecError, match="SF103"):
-        read("((2^{64})^{64})^{64}")
