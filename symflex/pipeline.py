@@ -42,7 +42,8 @@ from symflex.transfer.of_model import (
 )
 
 if TYPE_CHECKING:
-    from symflex.data.fitting.parameters import Derived, Machine, MachineFunction, ParameterFit
+    from symflex.data.fitting.machine import Derived, Machine, MachineFunction
+    from symflex.data.fitting.parameter_fit import ParameterFit
     from symflex.data.measurement import MeasuredResponse
     from symflex.model import ModelParameter
     from symflex.options import FitOptions
@@ -110,7 +111,7 @@ def machine_of(
     allow_outside: Iterable[str | Path] = (),
 ) -> Machine:
     """Return the functions of a specification that were measured, ready for fits of some parameters."""
-    from symflex.data.fitting.parameters import refuse_free
+    from symflex.data.fitting.machine import refuse_free
 
     model = load(path, allow_outside)
     refuse_free(names, {p.name: p for p in model.settable}, [d.name for d in model.definitions])
@@ -151,7 +152,7 @@ def _machine(
     from symflex.codegen.program.evaluate import Gradient
     from symflex.codegen.program.verify import choose_programs
     from symflex.data.fitting.identifiable import Coefficients, identify
-    from symflex.data.fitting.parameters import Machine, MachineFunction
+    from symflex.data.fitting.machine import Machine, MachineFunction
 
     values = dict(read_values(model.parameters, {}))
     free = tuple(p for name in names for p in model.parameters if p.name == name)
@@ -182,7 +183,7 @@ def _derived_values(model: Model, names: Sequence[str]) -> tuple[Derived, ...]:
     from symflex.codegen.program.derivative import differentiated
     from symflex.codegen.program.evaluate import values_of
     from symflex.codegen.program.forge import Forge, straight
-    from symflex.data.fitting.parameters import Derived
+    from symflex.data.fitting.machine import Derived
 
     free, varying, found = set(names), {LAPLACE}, []
     for definition in model.definitions:

@@ -102,6 +102,15 @@ class Settings:
     band: tuple[float, float] | None = None  # [Hz]
 
 
+@dataclass(frozen=True)
+class _RecordKind:
+    """How records begin, and hold their input."""
+
+    hold: str
+    is_at_rest: bool = False
+    lead: int = 0  # samples of the input before the first of the output
+
+
 class RecordSearch:
     """The search for the dynamics of some records; :attr:`tried` has the best of each number of poles."""
 
@@ -180,17 +189,17 @@ class RecordSearch:
                 filled.append(replace(one, input=u, output=y))
             records.append(tuple(filled))
         self.records = records
-        return self._rebuilt(state).refined(*FIRST)
+        return self._rebuilt(state, _kind(state.problem)).refined(*FIRST)
 
     def best(self) -> tuple[OutputError, PoleSet]:
         """Return the best so far, when time is over."""
-        problem = self.problem(hold=self.holds[-1], is_at_rest=False, lead=0)
+        problem = self.problem(_RecordKind(self.holds[-1]))
         dynamics = (
             min(self.tried.values(), key=lambda one: one.score).dynamics if self.tried else PoleSet.nothing()
         )
         return problem.with_noise(dynamics), dynamics
 
-    def problem(self, *, hold: str, is_at_rest: bool, lead: int) -> OutputError:
+    def problem(self, kind: _RecordKind) -> OutputError:
         """Return the problem of all lines, each output with the noise of its deviation."""
         outputs = []
         for same in self.records:
@@ -198,10 +207,10 @@ class RecordSearch:
             for one in same:
                 record = SampledRecord.of(
                     one,
-                    is_joined=hold == "joined",
-                    is_at_rest=is_at_rest,
-                    lead=lead,
-                    is_smooth=hold == "smooth",
+                    is_joined=kind.hold == "joined",
+                    is_at_rest=kind.is_at_rest,
+                    lead=kind.lead,
+                    is_smooth=kind.hold == "smooth",
                 )
                 if self.settings.band is not None:
                     hertz = record.omega / (2 * np.pi)
@@ -218,7 +227,7 @@ class RecordSearch:
         for delay in sorted(self.delays):
             base = replace(PoleSet.nothing(), has_drift=True, integrators=self.integrators)
             lead = delay + 2 if delay else 0
-            problem = _thinned(self.problem(hold=self.holds[0], is_at_rest=False, lead=lead))
+            problem = _thinned(self.problem(_RecordKind(self.holds[0], lead=lead)))
             if delay:
                 base = replace(base, delay_s=delay * problem.step_s, is_delay_free=True)
             states.append(_State.of(problem, base))
@@ -311,38 +320,39 @@ class RecordSearch:
                     state = other
         return state
 
-    def _rebuilt(self, state: _State, **changes: bool | int | str) -> _State:
+    def _rebuilt(self, state: _State, kind: _RecordKind) -> _State:
         """Return the state with records that begin, or hold their input, in another way."""
-        kept = _kind(state.problem) | changes
-        if kept["hold"] == "smooth":  # it never begins at rest
-            kept["is_at_rest"] = False
-        problem = _thinned(_noisy_as(self.problem(**kept), state.problem))  # type: ignore[arg-type]
+        if kind.hold == "smooth":  # it never begins at rest
+            kind = replace(kind, is_at_rest=False)
+        problem = _thinned(_noisy_as(self.problem(kind), state.problem))
         if any(one.measured is not None for same in problem.outputs for one in same):
             problem = self._freed(problem.filled(state.dynamics), state.dynamics)
         return _State.of(problem, state.dynamics)
 
     def _with_rest(self, state: _State) -> Iterator[_State]:
-        if self.is_driven and _kind(state.problem)["hold"] != "smooth":
-            yield self._rebuilt(state, is_at_rest=not state.problem.outputs[0][0].is_at_rest)
+        kind = _kind(state.problem)
+        if self.is_driven and kind.hold != "smooth":
+            yield self._rebuilt(state, replace(kind, is_at_rest=not kind.is_at_rest))
 
     def _with_hold(self, state: _State) -> Iterator[_State]:
+        kind = _kind(state.problem)
         for hold in self.holds:
-            if hold != _kind(state.problem)["hold"]:
-                yield self._rebuilt(state, hold=hold)
+            if hold != kind.hold:
+                yield self._rebuilt(state, replace(kind, hold=hold))
 
     def _with_delay(self, state: _State) -> Iterator[_State]:
         if not self.is_driven:
             return
-        dynamics = state.dynamics
+        dynamics, kind = state.dynamics, _kind(state.problem)
         if dynamics.is_delay_free:
             if not self.settings.is_delay_free:
                 plain = replace(dynamics, delay_s=0.0, is_delay_free=False)
-                yield replace(self._rebuilt(state, lead=0), dynamics=plain)
+                yield replace(self._rebuilt(state, replace(kind, lead=0)), dynamics=plain)
             return
         late = []
         for delay in sorted({0.3, 1.0, *(float(one) for one in self.delays if one)}):
             moved = replace(dynamics, delay_s=delay * state.problem.step_s, is_delay_free=True)
-            rebuilt = replace(self._rebuilt(state, lead=int(delay) + 2), dynamics=moved)
+            rebuilt = replace(self._rebuilt(state, replace(kind, lead=int(delay) + 2)), dynamics=moved)
             late.append(_State.of(rebuilt.problem, moved))
         yield from sorted(late, key=lambda one: one.score)[:TRIED]
 
@@ -371,7 +381,7 @@ class RecordSearch:
 
     def _whole(self, state: _State) -> OutputError:
         """Return the problem of all lines that a state belongs to."""
-        whole = self.problem(**_kind(state.problem))  # type: ignore[arg-type]
+        whole = self.problem(_kind(state.problem))
         return _noisy_as(whole, state.problem).filled(state.dynamics)
 
     def _coloured(self, state: _State) -> OutputError:
@@ -379,10 +389,9 @@ class RecordSearch:
         return self._freed(_thinned(self._whole(state).with_noise(state.dynamics)), state.dynamics)
 
 
-def _kind(problem: OutputError) -> dict[str, bool | int | str]:
-    """Return how the records of a problem begin, and hold their input."""
+def _kind(problem: OutputError) -> _RecordKind:
     one = problem.outputs[0][0]
-    return {"hold": hold_of(one), "is_at_rest": one.is_at_rest, "lead": one.lead}
+    return _RecordKind(hold_of(one), one.is_at_rest, one.lead)
 
 
 def hold_of(record: SampledRecord) -> str:

@@ -21,7 +21,8 @@ from pathlib import Path
 import numpy as np
 
 from symflex.data.fitting.fit import ResonanceFit
-from symflex.data.fitting.parameters import OF_SPREAD, ParameterFit
+from symflex.data.fitting.machine import OF_SPREAD
+from symflex.data.fitting.parameter_fit import ParameterFit
 from symflex.data.fitting.resonances import Resonances
 from symflex.data.fitting.text import ends_of_band
 from symflex.errors import Diagnostic, FitError, Source, SymflexError, refused

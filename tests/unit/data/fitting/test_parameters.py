@@ -4,44 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.linalg import expm
 
 from symflex import pipeline
-from symflex.data.fitting.identifiable import Coefficients
-from symflex.data.fitting.pulse_response import of_coefficients, of_function
 from symflex.data.fitting.text import parameter_passages, parameters_json
-from symflex.data.measurement import MeasuredResponse, read_measurement
-from symflex.data.measurement.measured_response import Samples
+from symflex.data.measurement import read_measurement
 from symflex.errors import DataError, UsageError
 from symflex.options import FitOptions
 from symflex.print.text import passages_text
 from tests.house.repository import ROOT
+from tests.unit.data.fitting.conftest import DRIVE, LINES
 from tests.unit.data.machines import study
 
 MEASURED = ROOT / "derivations" / "measured"
-DRIVE = """
-symflex = 1
-[parameters]
-J_1 = {J_1}
-J_2 = {J_2}
-k = {k}
-b = {b}
-[definitions]
-omega_z = "sqrt(k/J_2)"
-[elements]
-M = {{ type = "inertia", at = "q1", J = "J_1" }}
-L = {{ type = "inertia", at = "q2", J = "J_2" }}
-K = {{ type = "torsion_spring", between = ["q1", "q2"], k = "k" }}
-B = {{ type = "rotary_damper", between = ["q1", "q2"], b = "b" }}
-[inputs]
-tau = {{ torque = "q1" }}
-[outputs]
-theta_1 = "q1"
-theta_2 = "q2"
-"""
-BEGUN = {"J_1": '"1.5 g*m^2"', "J_2": '"7 g*m^2"', "k": '"300 N*m/rad"', "b": '"0.05 N*m*s/rad"'}
 TRUE = {"J_1": 2e-3, "J_2": 5e-3, "k": 400.0, "b": 0.03}
-LINES = np.geomspace(3, 300, 120)
 
 
 def drive(f, at="theta_1"):
@@ -56,28 +31,6 @@ def noisy(values, share, seed):
     source = np.random.default_rng(seed)
     noise = source.standard_normal(values.size) + 1j * source.standard_normal(values.size)
     return values * (1 + share / np.sqrt(2) * noise)
-
-
-@pytest.fixture
-def fitted(tmp_path):
-    def fit(
-        free,
-        values,
-        text=DRIVE,
-        tf="theta_1/tau",
-        f=LINES,
-        unit="",
-        samples=(),
-        is_magnitude=False,
-        **changes,
-    ):
-        (tmp_path / "model.toml").write_text(text.format(**BEGUN | changes))
-        response = MeasuredResponse(tf, f, values, unit=unit, samples=samples, is_magnitude=is_magnitude)
-        return pipeline.fit_parameters(
-            [response], FitOptions(model=tmp_path / "model.toml", free=free, tfs=(tf,))
-        )
-
-    return fit
 
 
 def test_all_parameters_of_a_drive_come_back_within_their_errors(fitted):
@@ -327,70 +280,6 @@ def test_the_examples_have_the_values_that_their_first_line_gives():
         off = [(found.values[n] - v) / e for (n, v), e in zip(true.items(), found.errors, strict=True)]
         assert np.max(np.abs(off)) < 3, name
         assert not found.poor, name
-
-
-def test_a_record_in_time_gives_the_parameters_of_a_motor_that_starts(fitted):
-    # a step at rest: the state equations of winding and rotor, a held input, the matrix exponential
-    h, n = 2e-4, 600
-    system = np.zeros((3, 3))
-    system[:2] = [[-1.2 / 1e-3, -0.05 / 1e-3, 1 / 1e-3], [0.05 / 3e-5, -2e-4 / 3e-5, 0]]
-    ahead = expm(system * h)
-    u = np.r_[np.zeros(20), np.full(n - 20, 12.0)]
-    x, y = np.zeros(2), np.zeros(n)
-    for k in range(n):
-        y[k] = x[1]
-        x = ahead[:2, :2] @ x + ahead[:2, 2] * u[k]
-    y += 0.01 * y.std() * np.random.default_rng(10).standard_normal(n)
-    f = np.geomspace(0.5, 2000, 80)
-    found = fitted("R,k,J", motor(f), MOTOR, "w/u", f, samples=(Samples(h, y, u),))
-    assert np.max(np.abs(found.theta - [1.2, 0.05, 3e-5]) / found.errors) < 3
-    assert np.max(found.errors / found.theta) < 0.05
-    assert "begins at rest" in found.in_time[0]
-    assert not found.poor
-
-
-def test_a_record_may_begin_in_motion_with_an_offset(fitted):
-    # an offset of the sensor, and a lag that was moving before: T y' + y = K u, solved between samples
-    text = "symflex = 1\nparameters.K = 1\nparameters.T = 3\ninputs.u = {{}}\noutputs.y = 'K*u/(T*s + 1)'"
-    source = np.random.default_rng(11)
-    u, a = np.repeat(source.integers(0, 2, 40) * 2.0, 10), np.exp(-0.1 / 2)
-    y = np.empty(u.size)
-    state = 5.0
-    for k in range(u.size):
-        y[k] = 0.7 + state
-        state = a * state + (1 - a) * 4 * u[k]
-    y += 0.02 * source.standard_normal(u.size)
-    f = np.geomspace(0.01, 4, 40)
-    response = 4 / (1 + 2j * np.pi * f * 2)
-    found = fitted("K,T", response, text, "y/u", f, samples=(Samples(0.1, y, u),))
-    assert np.max(np.abs(found.theta - [4, 2]) / found.errors) < 3
-    assert "state that it begins with is fitted" in found.in_time[0]
-
-
-@pytest.mark.parametrize("is_joined", [False, True])
-def test_the_pulse_response_of_a_lag_is_that_of_its_differential_equation(is_joined):
-    # T y' + y = K u, solved by hand between samples: h_1 and its ratio a, slopes by differences
-    model = pipeline.loads(
-        "symflex = 1\nparameters.K = 4\nparameters.T = 2\ninputs.u = {}\noutputs.y = 'K*u/(T*s + 1)'"
-    )
-    (tf,), _ = pipeline.derive_as(model, [("y", "u")])
-    coefficients = Coefficients.of(tf, ["K", "T"])
-    h, a = 0.3, np.exp(-0.3 / 2)
-    made = of_coefficients(coefficients, np.array([4.0, 2.0]), h, 5, is_joined=is_joined)
-    ramp = 1 - (1 - a) * 2 / h  # response to u = t/h, over K, after one step
-    first = [4 * ramp, 4 * (a * ramp + (1 - a) - ramp)] if is_joined else [0, 4 * (1 - a)]
-    expected = np.r_[first, first[1] * a ** np.arange(1, 4)]
-    assert made.values == pytest.approx(expected, rel=1e-12)
-    other = of_function(
-        lambda s: (4 / (2 * s + 1), np.stack((1 / (2 * s + 1), -4 * s / (2 * s + 1) ** 2), axis=1)),
-        h,
-        5,
-        64,
-        is_joined=is_joined,
-    )
-    assert other.values == pytest.approx(expected, abs=2e-3)
-    assert made.slopes == pytest.approx(other.slopes, abs=2e-3)
-    assert made.slopes[:, 0] == pytest.approx(expected / 4, rel=1e-12)
 
 
 @pytest.mark.slow
