@@ -51,6 +51,8 @@ def file_option(about: str) -> str | None:
     return option(None, "-o", "--output", is_path=True, help=about)
 
 
+MATRIX: Final = {"help": "All pairs as one matrix over their common denominator."}
+ENDS: Final = {"metavar": "NAMES"}
 ONE_TF: Final = {"metavar": "OUT/IN", "help": "Transfer function.  [default: the first one]"}
 SOME_TFS: Final = {"metavar": "OUT/IN", "multiple": True}
 ONLY_TFS: Final = {**SOME_TFS, "help": "Only this transfer function; may be repeated."}
@@ -149,6 +151,9 @@ class DeriveOptions:
         most=12,
         help="Expand functions of beams, rods and delays in s, exactly, up to this power.",
     )
+    is_matrix: bool = option(False, "--matrix", **MATRIX)
+    inputs: str = option("", "--in", **ENDS, help="--matrix: inputs, such as u1,u2.  [default: all]")
+    outputs: str = option("", "--out", **ENDS, help="--matrix: outputs, such as y1,y2.  [default: all]")
 
 
 @dataclass(frozen=True, eq=False, repr=False)

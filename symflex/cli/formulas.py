@@ -156,21 +156,20 @@ def derive(spec: Specification, given: DeriveOptions) -> int:
     so are definitions that mean the same in all of them. Strings in JSON follow the expression grammar of
     specifications, with every denominator in full.
 
+    --matrix prints all of them as one matrix of numerators over their least common denominator.
+
     --short and --order print formulas that are not exact, and below them what is proved: how much
     coefficients, poles and zeros change, and in which band the magnitude keeps within 1 dB.
     """
     from symflex import pipeline
     from symflex.print.forms import print_forms, terms_to_print, with_shared_denominators
 
+    if given.is_matrix:
+        return _matrix(spec, given)
+    refuse_ends(given)
     if given.limits or given.dimensionless:
         return _read_off(spec, given)
-    if given.width is not None and (given.as_json or given.format != "latex"):
-        raise refused("--width is for --format latex")
-    column = None
-    if given.width is not None:
-        from symflex.print.latex import column_width
-
-        column = column_width(given.width)
+    column = _column(given)
     model = spec.load()
     derived, reason = pipeline.derive_as(
         model,
@@ -219,6 +218,64 @@ def derive(spec: Specification, given: DeriveOptions) -> int:
 
             for line in solved_text(model, given.digits, above=""):
                 say(line)
+    return 0
+
+
+def _column(given: DeriveOptions) -> float | None:
+    """Return the width of the column [mm] that LaTeX is broken to."""
+    if given.width is None:
+        return None
+    if given.as_json or given.format != "latex":
+        raise refused("--width is for --format latex")
+    from symflex.print.latex import column_width
+
+    return column_width(given.width)
+
+
+def refuse_ends(given: DeriveOptions) -> None:
+    """Refuse names of inputs and outputs without the matrix whose rows and columns they choose."""
+    if given.inputs or given.outputs:
+        raise refused("--in and --out choose the columns and rows of a matrix", "add --matrix, or name --tf")
+
+
+def names_of_ends(given: DeriveOptions) -> tuple[list[str], list[str]]:
+    """Return the outputs and inputs named."""
+    if given.tfs:
+        raise refused("--tf names single functions", "choose rows and columns with --out and --in")
+    outputs, inputs = (
+        [n for name in text.split(",") if (n := name.strip())] for text in (given.outputs, given.inputs)
+    )
+    return outputs, inputs
+
+
+def _matrix(spec: Specification, given: DeriveOptions) -> int:
+    """Print all functions as one matrix."""
+    from symflex.matrices import notations
+    from symflex.matrices.printed import print_matrix
+    from symflex.matrices.transfer_matrix import derive_matrix
+
+    others = given.limits or given.dimensionless or given.short is not None or given.order is not None
+    if others or given.spread is not None:
+        raise refused("--limits, --dimensionless, --short, --spread and --order are for single functions")
+    outputs, inputs = names_of_ends(given)
+    column = _column(given)
+    representation = chosen_representation(given.representation, given.form)
+    is_json = given.as_json or given.format == "json"
+    matrix = derive_matrix(spec.load(), outputs, inputs, representation, is_read=not is_json)
+    if matrix.reason:
+        note(matrix.reason)
+    form = print_matrix(matrix, given.form, given.digits)
+    if is_json:
+        emit_json(notations.matrix_json(matrix, form))
+    elif given.format == "latex":
+        say(notations.matrix_display(matrix, form, column))
+    elif given.format in ("typst", "omml"):
+        from symflex.print import documents
+
+        spell = documents.typst_rows if given.format == "typst" else documents.omml_rows
+        say(spell(notations.matrix_mathml(matrix, form)))
+    else:
+        say(notations.matrix_text(matrix, form, terminal_width()))
     return 0
 
 

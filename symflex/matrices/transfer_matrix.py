@@ -59,7 +59,7 @@ class OverDenominator:
 
 
 @dataclass(frozen=True)
-class _Rows(Generic[Pair]):
+class _PairTable(Generic[Pair]):
     """Pairs of outputs and inputs, a row per output."""
 
     pairs: tuple[tuple[Pair, ...], ...]
@@ -95,7 +95,7 @@ class _Rows(Generic[Pair]):
 
 
 @dataclass(frozen=True)
-class TransferMatrix(_Rows[AnyTransferFunction]):
+class TransferMatrix(_PairTable[AnyTransferFunction]):
     """``y = N(s)/d(s) u``, exact: quantity and unit of an entry are those of its pair."""
 
     reason: str = ""  # why pairs are nested, where nobody asked for that
@@ -140,7 +140,7 @@ class TransferMatrix(_Rows[AnyTransferFunction]):
 
 
 @dataclass(frozen=True)
-class BoundMatrix(_Rows[AnyBoundFunction]):
+class BoundMatrix(_PairTable[AnyBoundFunction]):
     """A transfer matrix with numbers."""
 
     source: TransferMatrix
@@ -220,6 +220,7 @@ def over_common_denominator(
     ring = quotients[0][0].ring
     images = LineImages(ring)
     number = lcm(*(den.unit.numerator for _, den in quotients))
+    number = number if quotients[0][1].unit > 0 else -number
     den = quotients[0][1] / quotients[0][1].unit
     for _, other in quotients[1:]:
         missing = other / other.unit / den

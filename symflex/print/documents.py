@@ -17,7 +17,7 @@ from xml.etree.ElementTree import Element
 from xml.sax.saxutils import escape
 
 from symflex.print.forms import PrintedForm
-from symflex.print.mathml import transfer_function_mathml
+from symflex.print.mathml import MathRow, transfer_function_mathml
 from symflex.transfer import AnyTransferFunction
 
 INVISIBLE: Final = ("\u2061", "\u2062")
@@ -48,20 +48,27 @@ LONG: Final = "a formula this long is not written"
 
 def typst(tf: AnyTransferFunction, form: PrintedForm) -> str:
     """Return a transfer function as displays of Typst, one a row: ``$ frac(y (s), u (s)) = frac(k, s) $``."""
-    return "\n".join(f"$ {left} = {right} $" for left, right in _rows(tf, form, _typst))
+    return typst_rows(transfer_function_mathml(tf, form))
+
+
+def typst_rows(rows: Sequence[MathRow] | None) -> str:
+    """Return equations as displays of Typst; None is one that is too long."""
+    return "\n".join(f"$ {left} = {right} $" for left, right in _sides(rows, _typst))
 
 
 def omml(tf: AnyTransferFunction, form: PrintedForm) -> str:
     """Return a transfer function as a paragraph of Office Math, one ``m:oMath`` a row."""
+    return omml_rows(transfer_function_mathml(tf, form))
+
+
+def omml_rows(rows: Sequence[MathRow] | None) -> str:
+    """Return equations as a paragraph of Office Math; None is one that is too long."""
     equals = _run("=")
-    rows = (f"<m:oMath>{left}{equals}{right}</m:oMath>" for left, right in _rows(tf, form, _omml))
-    return f'<m:oMathPara xmlns:m="{NAMESPACE}">' + "\n".join(rows) + "</m:oMathPara>"
+    spelt = (f"<m:oMath>{left}{equals}{right}</m:oMath>" for left, right in _sides(rows, _omml))
+    return f'<m:oMathPara xmlns:m="{NAMESPACE}">' + "\n".join(spelt) + "</m:oMathPara>"
 
 
-def _rows(
-    tf: AnyTransferFunction, form: PrintedForm, spell: Callable[[Element], str]
-) -> list[tuple[str, str]]:
-    rows = transfer_function_mathml(tf, form)
+def _sides(rows: Sequence[MathRow] | None, spell: Callable[[Element], str]) -> list[tuple[str, str]]:
     if rows is None:
         word = ElementTree.fromstring(f"<mtext>{LONG}</mtext>")
         return [(spell(word), spell(word))]
@@ -105,6 +112,10 @@ def _typst(node: Element) -> str:
             return f"{inner[0]}_({inner[1]})^({inner[2]})"
         case "mover":
             return f"accent({inner[0]}, {ACCENTS.get((node[1].text or '').strip(), 'macron')})"
+        case "mtable":
+            return "; ".join(", ".join(map(_typst, line)) for line in node)
+    if any(child.tag == "mtable" for child in node):
+        return f"mat({inner[1]})"
     return " ".join(filter(None, inner)).replace("( ", "(").replace(" )", ")")
 
 
@@ -136,6 +147,9 @@ def _omml(node: Element) -> str:
         case "msubsup":
             parts = zip(("e", "sub", "sup"), inner, strict=True)
             return f"<m:sSubSup>{''.join(f'<m:{k}>{part}</m:{k}>' for k, part in parts)}</m:sSubSup>"
+        case "mtable":
+            lines = ("".join(f"<m:e>{_omml(cell)}</m:e>" for cell in line) for line in node)
+            return f"<m:m>{''.join(f'<m:mr>{line}</m:mr>' for line in lines)}</m:m>"
         case "mover":
             sign = escape((node[1].text or "").strip(), {'"': "&quot;"})
             return f'<m:acc><m:accPr><m:chr m:val="{sign}"/></m:accPr><m:e>{inner[0]}</m:e></m:acc>'

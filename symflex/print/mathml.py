@@ -224,6 +224,17 @@ _CALLIGRAPHIC: Final = {r"\mathcal{N}": "𝒩", r"\mathcal{D}": "𝒟"}
 _OF_S: Final = (APPLY_FUNCTION, fence("<mi>s</mi>", 0, is_tall=False))
 
 
+def of_s(head: str) -> str:
+    """Return what is a function of s, with its argument."""
+    return row(head, *_OF_S)
+
+
+def table_mathml(cells: Sequence[Sequence[str]]) -> str:
+    """Return a matrix in parentheses."""
+    lines = (f"<mtr>{''.join(f'<mtd>{cell}</mtd>' for cell in line)}</mtr>" for line in cells)
+    return fence(f"<mtable>{''.join(lines)}</mtable>", 0, is_tall=True)
+
+
 @dataclass(frozen=True, slots=True)
 class MathRow:
     """One equation: its left side, and its right side in pieces between which a line may end."""
@@ -260,7 +271,7 @@ def transfer_function_mathml(tf: AnyTransferFunction, form: PrintedForm) -> tupl
 
 
 def _end(end: Input | Output) -> str:
-    return row(label_mathml(end.name, {end.name: end.latex}), *_OF_S)
+    return of_s(label_mathml(end.name, {end.name: end.latex}))
 
 
 def _formula(tf: AnyTransferFunction, form: PrintedForm, writer: MathmlWriter) -> list[MathRow]:

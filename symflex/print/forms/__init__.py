@@ -123,6 +123,24 @@ def print_form(
     """
     made = _arranged(tf, form, digits, arranged or Arranged())
     read_back(tf, made, digits if made.name in DECIMAL_FORMS else None)
+    return in_s(tf, made)
+
+
+def print_part(
+    tf: TransferFunction, form: str | None = None, digits: int = 6, arranged: Arranged | None = None
+) -> PrintedForm:
+    """Return what stands in place of a function, such as one side of it, before it is read back.
+
+    It is read back, and written :func:`in_s`, by whoever puts the parts together.
+    """
+    if form is not None and form not in FORMS:
+        raise no_such("form", form, FORMS)
+    arrange = _lumped if tf.is_rational else _distributed
+    return arrange(tf, form, digits, arranged or Arranged())
+
+
+def in_s(tf: AnyTransferFunction, made: PrintedForm) -> PrintedForm:
+    """Return a form in s where the function's ring has a root of s in its place."""
     if tf.model.root is None:
         return made
     written = {d.name: d.expression for d in tf.model.definitions if d.name in made.definitions}
@@ -155,18 +173,19 @@ def _arranged(tf: AnyTransferFunction, form: str | None, digits: int, arranged: 
         made = _distributed(tf, form, digits, arranged)
     else:
         made = _lumped(tf, form, digits, arranged)
-        whole = quotient(made.num, made.den)
-        if (
-            form is None
-            and not tf.model.root
-            and not any(isinstance(n, Name) and n != S for n in names_in(whole))
-        ):
-            numbers = (abs(n.value.numerator) for n in nodes(whole) if isinstance(n, Number))
-            if max(numbers, default=0) > READABLE:
-                return _made(tf, "zpk", digits, arranged)
+        if form is None and not tf.model.root and is_unreadable((made.num, made.den)):
+            return _made(tf, "zpk", digits, arranged)
     if form is None and _length(made) > LONG and (written := _written(tf, arranged)) is not None:
         return min((made, written), key=lambda f: _length(f) * (1 if f is made else SHORTER))
     return made
+
+
+def is_unreadable(parts: Sequence[Expression]) -> bool:
+    """Tell whether a function without parameters has whole numbers that nobody reads."""
+    if any(isinstance(n, Name) and n != S for e in parts for n in names_in(e)):
+        return False
+    numbers = (abs(n.value.numerator) for e in parts for n in nodes(e) if isinstance(n, Number))
+    return max(numbers, default=0) > READABLE
 
 
 def _distributed(tf: TransferFunction, form: str | None, digits: int, arranged: Arranged) -> PrintedForm:
@@ -375,8 +394,11 @@ __all__ = [
     "PrintedForm",
     "counts_of",
     "hidden_expressions",
+    "in_s",
+    "is_unreadable",
     "print_form",
     "print_forms",
+    "print_part",
     "terms_to_print",
     "with_hidden",
     "with_shared_denominators",

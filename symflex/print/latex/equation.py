@@ -77,9 +77,15 @@ def transfer_function_latex(
     writer = Writer(form_labels(tf, form))
     width = None if width_mm is None else max(width_mm, NARROWEST_MM) / EM_MM
     parts = [_formula(tf, form, writer, width, label or equation_label(tf.name))]
-    if form.where or form.laws:
-        parts.append(_align(_where_rows(_explained(form, writer), writer, width), "align*", ""))
-    return "\n".join(parts)
+    return "\n".join([*parts, *where_latex(form, writer, width_mm)])
+
+
+def where_latex(form: PrintedForm, writer: Writer, width_mm: float | None) -> list[str]:
+    """Return the display below a formula that says what its names stand for, none where it has none."""
+    if not (form.where or form.laws):
+        return []
+    width = None if width_mm is None else max(width_mm, NARROWEST_MM) / EM_MM
+    return [_align(_where_rows(_explained(form, writer), writer, width), "align*", "")]
 
 
 def formula_latex(
@@ -87,16 +93,17 @@ def formula_latex(
     where: Sequence[tuple[str, Expression]],
     labels: Mapping[str, str],
     *,
-    width_mm: float,
+    width_mm: float | None,
 ) -> str:
     """Return equations, left sides in LaTeX, as a display without numbers, broken where they must be."""
     writer = Writer(labels)
-    width = max(width_mm, NARROWEST_MM) / EM_MM
+    width = None if width_mm is None else max(width_mm, NARROWEST_MM) / EM_MM
     # The commands of the left side are wider than what they print.
     column = max(min(float(len(left)), _WIDEST_LEFT) for left, _ in sides)
     parts = [_align([_row(left, e, writer, width, column) for left, e in sides], "align*", "")]
     if where:
-        parts.append(_align(_where_rows(_defined(where, writer), writer, width - _WHERE_WIDTH), "align*", ""))
+        room = None if width is None else width - _WHERE_WIDTH
+        parts.append(_align(_where_rows(_defined(where, writer), writer, room), "align*", ""))
     return "\n".join(parts)
 
 
