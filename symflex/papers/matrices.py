@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Final
+from typing import Final, NoReturn
 
 from symflex.errors import Span
 from symflex.expressions import (
@@ -25,7 +25,6 @@ from symflex.expressions import (
     product_of,
     sum_of,
 )
-from symflex.papers.symbols import SymbolReader
 
 LARGEST_MATRIX: Final = 4  # whose determinant is expanded
 MOST_PARTS: Final = 20_000  # of a product of matrices, or of a determinant
@@ -40,6 +39,9 @@ class Matrix:
 
 
 Value = Expression | Matrix
+
+Refuse = Callable[[str], NoReturn]
+"""Raises the error for what is not read, at its place."""
 
 
 def unsigned(node: Expression) -> Expression:
@@ -65,7 +67,7 @@ def negated(value: Value) -> Value:
     return mapped(value, lambda x: Negative(x, span=x.span))
 
 
-def sum_of_values(terms: Sequence[Value], span: Span, reader: SymbolReader) -> Value:
+def sum_of_values(terms: Sequence[Value], span: Span, refuse: Refuse) -> Value:
     """Return the sum of trees, or of matrices entry by entry."""
     if len(terms) == 1:
         return terms[0]
@@ -73,7 +75,7 @@ def sum_of_values(terms: Sequence[Value], span: Span, reader: SymbolReader) -> V
     if matrices:
         sizes = {(len(m.rows), len(m.rows[0])) for m in matrices}
         if len(matrices) != len(terms) or len(sizes) > 1:
-            reader.refuse("matrices of different sizes cannot be added")
+            refuse("matrices of different sizes cannot be added")
         rows = zip(*(m.rows for m in matrices), strict=True)
         cells = (tuple(_sum(entries, span) for entries in zip(*same, strict=True)) for same in rows)
         return Matrix(tuple(cells), span)
@@ -85,18 +87,18 @@ def _sum(terms: Sequence[Expression], span: Span) -> Expression:
     return Sum(tuple(flat), span=span)
 
 
-def product_of_values(a: Value, b: Value, span: Span, reader: SymbolReader) -> Value:
+def product_of_values(a: Value, b: Value, span: Span, refuse: Refuse) -> Value:
     """Return the product of trees, of matrices, or of one of each."""
     if isinstance(a, Matrix) and isinstance(b, Matrix):
         if len(a.rows[0]) != len(b.rows):
-            reader.refuse("matrices of these sizes cannot be multiplied")
+            refuse("matrices of these sizes cannot be multiplied")
         columns = list(zip(*b.rows, strict=True))
         rows = [
             tuple(sum_of(product_of(pair) for pair in zip(row, column, strict=True)) for column in columns)
             for row in a.rows
         ]
         if is_longer([e for row in rows for e in row], MOST_PARTS):
-            reader.refuse("this product of matrices is too long to be written out")
+            refuse("this product of matrices is too long to be written out")
         whole = Matrix(tuple(rows), span)
         return whole.rows[0][0] if len(rows) == 1 and len(rows[0]) == 1 else whole
     if isinstance(a, Matrix) or isinstance(b, Matrix):
@@ -106,19 +108,19 @@ def product_of_values(a: Value, b: Value, span: Span, reader: SymbolReader) -> V
     return flat_product([a, b], span)
 
 
-def quotient_of_values(a: Value, b: Value, span: Span, reader: SymbolReader) -> Value:
+def quotient_of_values(a: Value, b: Value, span: Span, refuse: Refuse) -> Value:
     """Return a tree or a matrix over a tree."""
     if isinstance(b, Matrix):
-        reader.refuse("a quotient by a matrix is not read")
+        refuse("a quotient by a matrix is not read")
     if is_number(b, 0):
-        reader.refuse("a formula divides by zero")
+        refuse("a formula divides by zero")
     return mapped(a, lambda x: Quotient(x, b, span=span))
 
 
-def power_of_value(base: Value, exponent: Expression, span: Span, reader: SymbolReader) -> Expression:
+def power_of_value(base: Value, exponent: Expression, span: Span, refuse: Refuse) -> Expression:
     """Return a power of a tree."""
     if isinstance(base, Matrix):
-        reader.refuse("a power of a matrix is not read")
+        refuse("a power of a matrix is not read")
     return Power(base, exponent, span=span)
 
 
@@ -136,16 +138,16 @@ def determinant_of(rows: Sequence[Sequence[Expression]]) -> Expression:
     return sum_of(terms)
 
 
-def inverse_of(value: Matrix, reader: SymbolReader) -> Matrix:
+def inverse_of(value: Matrix, refuse: Refuse) -> Matrix:
     """Return the inverse of a matrix, by its minors."""
     rows, size = value.rows, len(value.rows)
     if size != len(rows[0]) or size > LARGEST_MATRIX:
-        reader.refuse("the inverse of this matrix is not read")
+        refuse("the inverse of this matrix is not read")
     if is_longer([e for row in rows for e in row], MOST_PARTS // 24):
-        reader.refuse("the inverse of this matrix is too long to be written out")
+        refuse("the inverse of this matrix is too long to be written out")
     whole = determinant_of(rows)
     if is_number(whole, 0):
-        reader.refuse("this matrix has no inverse")
+        refuse("this matrix has no inverse")
 
     def entry(i: int, k: int) -> Expression:
         minor = [[*row[:i], *row[i + 1 :]] for j, row in enumerate(rows) if j != k]
@@ -153,3 +155,8 @@ def inverse_of(value: Matrix, reader: SymbolReader) -> Matrix:
         return Quotient(Negative(inner) if (i + k) % 2 else inner, whole, span=value.span)
 
     return Matrix(tuple(tuple(entry(i, k) for k in range(size)) for i in range(size)), value.span)
+
+
+def transposed(value: Matrix) -> Matrix:
+    """Return a matrix with rows in place of columns."""
+    return replace(value, rows=tuple(zip(*value.rows, strict=True)))

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 from symflex.errors import SpecError
@@ -23,18 +23,16 @@ from symflex.expressions import (
     Derivative,
     Expression,
     Name,
-    Negative,
-    Power,
-    Product,
-    Quotient,
-    Sum,
     format_expression,
     is_number,
     names,
     number,
+    substitute,
 )
-from symflex.papers.formula import defined_symbol, read_value
-from symflex.papers.matrices import Matrix
+from symflex.papers.formula import defined_symbol
+from symflex.papers.laplace_equations import Signals, degree, is_ratio, signals_in, terms_of
+from symflex.papers.matrices import Matrix, Value
+from symflex.papers.matrix_equations import NamedMatrices
 from symflex.papers.source import Paper, PrintedEquation, refusal, statements, text_of, written
 from symflex.papers.symbols import LAPLACE, PaperNotation, PrintedSymbol
 
@@ -58,10 +56,7 @@ class _Equation:
     @property
     def terms(self) -> tuple[Expression, ...]:
         """The terms of both sides that are not zero, without their signs."""
-        sides = (self.left, self.right)
-        found = [t for side in sides for t in (side.terms if isinstance(side, Sum) else (side,))]
-        bare = (t.operand if isinstance(t, Negative) else t for t in found)
-        return tuple(t for t in bare if not is_number(t, 0))
+        return tuple(terms_of((self.left, self.right)))
 
 
 @dataclass
@@ -71,8 +66,8 @@ class _PaperMotion:
     equations: list[_Equation] = field(default_factory=list)
     definitions: dict[str, tuple[Expression, PrintedEquation]] = field(default_factory=dict)
     gaps: list[str] = field(default_factory=list)
-    timed: set[str] = field(default_factory=set)  # what is written as a function of t
-    matrices: set[str] = field(default_factory=set)  # names of matrices and vectors
+    timed: set[str] = field(default_factory=set)  # what is written as a function of t, or of s
+    matrices: NamedMatrices = field(default_factory=NamedMatrices)
 
 
 def motion_specification(paper: Paper, title: str) -> str:
@@ -85,16 +80,20 @@ def motion_specification(paper: Paper, title: str) -> str:
         for one in found.equations
         for n in (*names(one.left), *names(one.right))
     ):
+        if (text := _laplace_text(paper, title)) is not None:
+            return text
         span = paper.displays[0].span if paper.displays else None
         message = "there are no equations of motion: no displayed equation has a derivative in time"
         if found.gaps:
             message = f"no equation of motion is read; {found.gaps[0]}"
-        raise refusal(span, message, r"derivatives are \dot{x}, x'' or \frac{d^2 x}{dt^2}")
+        hint = r"derivatives are \dot{x}, x'' or \frac{d^2 x}{dt^2}; signals in s are X(s)"
+        raise refusal(span, message, hint)
     return _field_text(found, title) if is_field else _text(found, title)
 
 
 def _read(paper: Paper, notation: PaperNotation) -> _PaperMotion:
     found = _PaperMotion()
+    read: list[tuple[PrintedEquation, list[Value], bool]] = []
     for display in paper.displays:
         try:
             if display.problem is not None:
@@ -106,43 +105,47 @@ def _read(paper: Paper, notation: PaperNotation) -> _PaperMotion:
             continue
         for equation in equations:
             if len(equation.sides) > 1 and not equation.is_condition:
-                _take(equation, notation, found, is_inline=display.is_inline)
-    for one in found.equations:
-        held = {n.name for n in (*names(one.left), *names(one.right))}
-        if held & found.matrices:
-            listed = ", ".join(sorted(held & found.matrices))
-            message = f"an equation of matrices is not read: {listed} of this paper has rows and columns"
-            raise refusal(one.printed.span, message, "write the equations out, a line for each row")
+                sides = _sides(equation, notation, found, is_inline=display.is_inline)
+                if sides and not found.matrices.takes(sides, equation):
+                    read.append((equation, sides, display.is_inline))
+    for equation, sides, is_inline in read:
+        _take(equation, found.matrices.written_out(sides, equation), notation, found, is_inline=is_inline)
     return found
 
 
-def _take(
+def _sides(
     equation: PrintedEquation, notation: PaperNotation, found: _PaperMotion, *, is_inline: bool
+) -> list[Value]:
+    """Return the sides of an equation; none, and a gap, where it is not read."""
+    said = "holds only nearly" if equation.nearly is not None else ""
+    try:
+        sides = found.matrices.read(equation, notation)
+    except SpecError as error:
+        said = f"is not read: {error.diagnostics[0].message}"
+    if said and not is_inline:
+        found.gaps.append(f"line {equation.span.line} {said}: {_comment(equation)}")
+    return [] if said else sides
+
+
+def _take(
+    equation: PrintedEquation,
+    sides: Sequence[Value],
+    notation: PaperNotation,
+    found: _PaperMotion,
+    *,
+    is_inline: bool,
 ) -> None:
     typed = [t.text for t in equation.tokens]
-    try:
-        sides = [read_value(side, notation) for side in equation.sides]
-    except SpecError as error:
-        if not is_inline:
-            said = error.diagnostics[0]
-            found.gaps.append(f"line {equation.span.line} is not read: {said.message}: {_comment(equation)}")
-        return
-    if equation.nearly is not None:
-        if not is_inline:
-            found.gaps.append(f"line {equation.span.line} holds only nearly: {_comment(equation)}")
-        return
     rows = _rows(sides[0], sides[-1])
-    if not rows:
-        named = next((x.name for x in (sides[0], sides[-1]) if isinstance(x, Name)), None)
-        if named is not None:
-            found.matrices.add(named)
-        elif not is_inline:
-            found.gaps.append(f"line {equation.span.line} has sides of different sizes: {_comment(equation)}")
+    if not rows and not is_inline:
+        found.gaps.append(f"line {equation.span.line} has sides of different sizes: {_comment(equation)}")
     for left, right in rows:
+        if left == right:  # of a state that is the derivative of another
+            continue
         one = _Equation(left, right, equation)
         held = (*names(left), *names(right))
         moving = any(isinstance(n, Derivative) for n in held)
-        if notation.motion == "field":
+        if notation.motion != "time":
             moving |= any(isinstance(n, Name) and n.name == LAPLACE for n in held)
         placed = any(isinstance(n, Call) and n.name not in FUNCTIONS for n in held)
         if (moving or placed) and not is_inline:
@@ -161,7 +164,7 @@ def _is_timed(following: Sequence[str]) -> bool:
     before, bracket, after = "".join(following).partition("(")
     return (
         bool(bracket)
-        and after.startswith("t)")
+        and after.startswith(("t)", "s)"))
         and re.fullmatch(r"\}*(_(\w|\{\w+\}))?\}*", before) is not None
     )
 
@@ -202,10 +205,39 @@ def _named(expressions: Iterable[Expression]) -> dict[str, None]:
     )
 
 
-def _text(found: _PaperMotion, title: str) -> str:
+def _laplace_text(paper: Paper, title: str) -> str | None:
+    """Return the specification of equations in s; ``None`` if a paper has none."""
+    found = _read(paper, PaperNotation({PrintedSymbol("s"): LAPLACE}))
+    functions = {
+        one.left.name: one.right
+        for one in found.equations
+        if isinstance(one.left, Name) and not set(_named([one.right])) & found.timed
+    }
+    algebraic = [
+        _Equation(Name(name), value, printed)
+        for name, (value, printed) in found.definitions.items()
+        if name in found.timed and set(_named([value])) & found.timed
+    ]
+    equations = [
+        replace(one, left=substitute(one.left, functions), right=substitute(one.right, functions))
+        for one in (*found.equations, *algebraic)
+        if not (isinstance(one.left, Name) and one.left.name in functions)
+        and not is_ratio((one.left, one.right), found.timed)
+    ]
+    signals = signals_in([(one.left, one.right) for one in equations], found.timed, FORCES)
+    if signals is None:
+        return None
+    if signals.doubt:
+        found.gaps.append(signals.doubt)
+    found.definitions = {n: d for n, d in found.definitions.items() if n not in found.timed}
+    found.equations = equations
+    return _text(found, title, signals)
+
+
+def _text(found: _PaperMotion, title: str, signals: Signals | None = None) -> str:
     sides = [e for one in found.equations for e in (one.left, one.right)]
     derived = dict.fromkeys(n.name for e in sides for n in names(e) if isinstance(n, Derivative))
-    unknowns = list(derived)
+    unknowns = list(derived if signals is None else signals.unknowns)
     kept: dict[str, Expression] = {}
     for name, (value, printed) in found.definitions.items():
         if name in unknowns or set(_named([value])) & set(unknowns):
@@ -213,9 +245,9 @@ def _text(found: _PaperMotion, title: str) -> str:
             unknowns += [] if name in unknowns else [name]
         elif name in _named([*sides, *kept.values()]):
             kept[name] = value
-    is_nonlinear = any(_is_nonlinear(term, unknowns) for one in found.equations for term in one.terms)
+    is_nonlinear = any(degree(term, unknowns) > 1 for one in found.equations for term in one.terms)
     everything = _named([e for one in found.equations for e in (one.left, one.right)] + list(kept.values()))
-    inputs = list(_inputs(found, unknowns, kept, everything))
+    inputs = list(_inputs(found, unknowns, kept, everything) if signals is None else signals.inputs)
     parameters = [n for n in everything if n not in (*unknowns, *inputs, *kept, "pi")]
     lines = [*_heading(found, title)]
     if len(found.equations) != len(unknowns):
@@ -301,32 +333,6 @@ def _inputs(
                 )
     yield from chosen
     yield from (n for n in everything if n in found.timed and n not in unknowns and n not in chosen)
-
-
-def _is_nonlinear(term: Expression, unknowns: Sequence[str]) -> bool:
-    """Tell whether a term is no multiple of an unknown or of its derivatives."""
-
-    def degree(node: Expression) -> int:
-        match node:
-            case Derivative():
-                return 1
-            case Name(name):
-                return int(name in unknowns)
-            case Product(factors):
-                return sum(map(degree, factors))
-            case Sum(terms):
-                return max(map(degree, terms))
-            case Quotient(above, below):
-                return degree(above) + 2 * degree(below)
-            case Power(base, _):
-                return 2 * degree(base)
-            case Call():
-                return 2 * max((degree(c) for c in node.children), default=0)
-            case Negative(operand):
-                return degree(operand)
-        return 0
-
-    return degree(term) > 1
 
 
 # --- fields ---

@@ -188,10 +188,10 @@ class LatexReader(SymbolReader):
             terms.append(negated(term) if sign == "-" else term)
             if self.text in (r"\over", r"\atop"):
                 break
-        value = sum_of_values(terms, self.span(start), self)
+        value = sum_of_values(terms, self.span(start), self.refuse)
         if self.text == r"\over":
             self.take()
-            value = quotient_of_values(value, self.sum(), self.span(start), self)
+            value = quotient_of_values(value, self.sum(), self.span(start), self.refuse)
         self.depth -= 1
         return value
 
@@ -206,7 +206,7 @@ class LatexReader(SymbolReader):
             if text in TIMES:
                 self.take()
                 slash = None
-                value = product_of_values(value, self.signed_operand(), self.span(start), self)
+                value = product_of_values(value, self.signed_operand(), self.span(start), self.refuse)
             elif text in ("/", r"\div", r"\slash"):
                 sign_at = self.at
                 self.take()
@@ -215,11 +215,11 @@ class LatexReader(SymbolReader):
                     self.refuse("a/b/c is read from the left")
                 if self.starts() and self.choose(self.at, 2):
                     while self.starts():
-                        divisor = product_of_values(divisor, self.operand(), self.span(start), self)
+                        divisor = product_of_values(divisor, self.operand(), self.span(start), self.refuse)
                 if self.text in ("/", r"\div") and self.choose(self.at, 2):  # a/(b/c)
                     self.take()
-                    divisor = quotient_of_values(divisor, self.operand(), self.span(start), self)
-                value = quotient_of_values(value, divisor, self.span(start), self)
+                    divisor = quotient_of_values(divisor, self.operand(), self.span(start), self.refuse)
+                value = quotient_of_values(value, divisor, self.span(start), self.refuse)
                 slash = None
             elif self.starts():
                 is_unit = self.tokens[self.at - 1].text in IMAGINARY and text.isdigit()  # j2\beta l
@@ -231,7 +231,7 @@ class LatexReader(SymbolReader):
                 is_apart = self.tokens[self.at].is_spaced or text in (r"\text", r"\textrm", r"\mbox")
                 if text in FONTS and (is_bare or is_apart) and self.is_unit(any_name=is_bare):
                     self.refuse("what follows this may be a unit or a factor")
-                value = product_of_values(value, self.operand(), self.span(start), self)
+                value = product_of_values(value, self.operand(), self.span(start), self.refuse)
             else:
                 break
         if isinstance(value, Expression):
@@ -318,12 +318,12 @@ class LatexReader(SymbolReader):
             self.take()
             if isinstance(value, Matrix) and text_of(self.tokens[self.at : self.at + 3]) in ("{-1",):
                 self.group()
-                value = inverse_of(value, self)
+                value = inverse_of(value, self.refuse)
                 continue
             if isinstance(value, Matrix):
                 self.refuse("a power of a matrix other than its inverse is not read")
             exponent = self.group_expression()
-            value = power_of_value(value, exponent, self.span(start), self)
+            value = power_of_value(value, exponent, self.span(start), self.refuse)
             raised = True
         return value
 
@@ -438,7 +438,7 @@ class LatexReader(SymbolReader):
             return derivative
         above = self.group()
         below = self.group()
-        return quotient_of_values(above, below, self.span(start), self)
+        return quotient_of_values(above, below, self.span(start), self.refuse)
 
     def root(self) -> Expression:
         """Return a root."""
@@ -524,7 +524,9 @@ class LatexReader(SymbolReader):
             is_plain = isinstance(value, Sum) and any(isinstance(unsigned(t), Number) for t in value.terms)
             is_apart = self.at < len(self.tokens) and self.tokens[self.at].is_spaced
             if self.continues() and is_plain and not is_apart and name != "exp" and self.choose(at, 2):
-                return self.expression_of(product_of_values(value, self.operand(), self.span(at), self))
+                return self.expression_of(
+                    product_of_values(value, self.operand(), self.span(at), self.refuse)
+                )
             return value
         if (
             self.text == "{"
@@ -833,10 +835,10 @@ class LatexReader(SymbolReader):
         else:
             self.bound[match[1]] = outer
         if is_sum:
-            return sum_of_values(values, self.span(start), self)
+            return sum_of_values(values, self.span(start), self.refuse)
         value = values[0]
         for other in values[1:]:
-            value = product_of_values(value, other, self.span(start), self)
+            value = product_of_values(value, other, self.span(start), self.refuse)
         return value
 
     def derivative(self, start: int) -> Value | None:
@@ -864,7 +866,7 @@ class LatexReader(SymbolReader):
         operand = self.read_inner(inner) if inner else self.operand()
         span = self.span(start)
         if match[2] == "t" and not (motion == "time" and isinstance(operand, Name)):
-            return product_of_values(_differentiation(order, span), operand, span, self)
+            return product_of_values(_differentiation(order, span), operand, span, self.refuse)
         value = self.expression_of(operand)
         if not isinstance(value, Name):
             return Differentiated(value, order, span=span)

@@ -39,14 +39,21 @@ def test_an_upright_d_is_a_differential() -> None:
     assert equations(text) == ["m*x'' + c*x' + k*x = F"]
 
 
-def test_equations_of_named_matrices_are_refused() -> None:
-    matrix = r"\begin{bmatrix}0&1\\-k/m&-c/m\end{bmatrix}"
-    for text in (
-        rf"\[ \dot{{x}}=Ax+Bu \] \[ A={matrix} \]",
-        rf"\[ \dot{{\mathbf{{x}}}} = \mathbf{{A}}\mathbf{{x}}+\mathbf{{b}}u,\ \mathbf{{A}}={matrix} \]",
-    ):
-        with pytest.raises(SpecError, match="A of this paper has rows and columns"):
-            specification(text)
+def test_equations_in_s_become_equations_in_s() -> None:
+    # A motor: Newton's and Kirchhoff's laws in s; the voltage is the input, both others are unknown.
+    text = specification(
+        r"\begin{align} s(Js + b)\Theta(s) &= KI(s) \\ (Ls + R)I(s) &= V(s) - Ks\Theta(s) \end{align}"
+    )
+    assert equations(text) == ["s*(J*s + b)*Theta = K*I", "(L*s + R)*I = V - K*s*Theta"]
+    assert loads(text).transfer_functions == (("Theta_out", "V"), ("I_out", "V"))
+
+
+def test_a_transfer_function_of_a_paper_is_used_in_its_loop() -> None:
+    text = specification(
+        r"\[ Y(s) = G(s) E(s),\quad E(s) = R(s) - Y(s) \] \[ G(s) = \frac{K}{s(\tau s+1)} \]"
+    )
+    assert equations(text) == ["Y = K/(s*(tau*s + 1))*E", "E = R - Y"]
+    assert loads(text).transfer_functions == (("Y_out", "R"), ("E_out", "R"))
 
 
 def test_each_line_says_what_it_was_read_from() -> None:
@@ -118,3 +125,5 @@ def test_partial_derivatives_of_lagrange_make_no_field() -> None:
 def test_a_paper_without_motion_is_refused() -> None:
     with pytest.raises(SpecError, match="there are no equations of motion"):
         specification(r"\[ G = \frac{1}{s} \]")
+    with pytest.raises(SpecError, match="there are no equations of motion"):
+        specification(r"\[ \frac{X(s)}{F(s)} = \frac{1}{ms^2+k} \]")
