@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 from itertools import chain, combinations, islice, product
+from math import prod
 
 from symflex.algebra import LAPLACE, Factored, by_powers
 from symflex.audit.field import GrowError, UnreadError
@@ -287,18 +288,35 @@ def _times_number(wanted: _Wanted) -> Iterator[Correction]:
 
 
 def _times(ratio: Fraction, part: Expression) -> Expression:
-    """Return a part times a number, a fraction rather than a decimal."""
-    product = product_of([number(ratio), part])
-    sign, size = (-1, product.operand) if isinstance(product, Negative) else (1, product)
-    if (
-        isinstance(size, Product)
-        and isinstance(size.factors[0], Number)
-        and size.factors[0].value.denominator != 1
-    ):
-        value = size.factors[0].value
-        above = product_of([number(sign * value.numerator), *size.factors[1:]])
-        return quotient(above, number(value.denominator))
-    return product
+    """Return a part times a number: one number, in lowest terms, in front of it and below its bar."""
+    front, rest = _parted(part)
+    value = ratio * front
+    above: Expression = rest
+    below: Expression = number(1)
+    while isinstance(above, Quotient) and (abs(value.numerator) != 1 or is_number(below, 1)):
+        below = product_of([above.denominator, below])
+        above = above.numerator
+    product = product_of([number(value.numerator), above])
+    divisor = product_of([number(value.denominator), below])
+    return product if is_number(divisor, 1) else quotient(product, divisor)
+
+
+def _parted(part: Expression) -> tuple[Fraction, Expression]:
+    """Return the number in front of a part, and the rest."""
+    match part:
+        case Number(value):
+            return value, number(1)
+        case Negative(operand):
+            front, rest = _parted(operand)
+            return -front, rest
+        case Product(factors):
+            each = [_parted(factor) for factor in factors]
+            return prod((front for front, _ in each), start=Fraction(1)), product_of(rest for _, rest in each)
+        case Quotient(above, below):
+            (front, rest), (under, divisor) = _parted(above), _parted(below)
+            if under:
+                return front / under, rest if is_number(divisor, 1) else quotient(rest, divisor)
+    return Fraction(1), part
 
 
 def _times_monomial(wanted: _Wanted) -> Iterator[Correction]:

@@ -11,7 +11,7 @@ entry, whose digits stay text: ``"16.250"`` promises one digit more than ``"16.2
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -25,7 +25,7 @@ from symflex.model.network import AsWritten
 from symflex.model.reading import Reader
 from symflex.model.settings import value_in_unit
 from symflex.model.spec import ArrayValue, KeyValue, NumberValue, StringValue, TableValue, Value
-from symflex.papers.tabular import GAP, PRINTED, cells_of, lists_of
+from symflex.papers.tabular import GAP, PRINTED, cells_of, comma_of, lists_of
 from symflex.quantities import parse_quantity
 
 KEYS = ("of", "tf", "prints", "rows", "values", "latex", "source", "doc")
@@ -123,9 +123,9 @@ class _TableReading:
                 reader.misfit(f"rows of {what} must be an array", given.value, EXAMPLE)
                 return
             items = given.value.items
-        count = 0
+        count, comma = 0, comma_of(_strings(items))
         for item in items:
-            if (row := self._row(item)) is None:
+            if (row := self._row(item, comma)) is None:
                 continue
             count += len(row.entries)
             if count > MOST_ENTRIES:
@@ -143,7 +143,7 @@ class _TableReading:
         for each in found or ():
             yield PrintedRow((), each.entries, entry.value.span, each.heading)
 
-    def _row(self, item: Value) -> PrintedRow | None:
+    def _row(self, item: Value, comma: str | None) -> PrintedRow | None:
         reader, what = self.reader, f"a row of {self.what}"
         values, given = item, tuple[tuple[str, ExactValue], ...]()
         if isinstance(item, TableValue):
@@ -158,12 +158,12 @@ class _TableReading:
         if not isinstance(values, ArrayValue):
             reader.misfit(f"values of {what} must be an array", values, EXAMPLE)
             return None
-        texts = tuple(self._printed(value) for value in values.items)
+        texts = tuple(self._printed(value, comma) for value in values.items)
         if None in texts or not texts:
             return None
         return PrintedRow(given, tuple(filter(None, texts)), item.span)
 
-    def _printed(self, value: Value) -> str | None:
+    def _printed(self, value: Value, comma: str | None) -> str | None:
         """Return the digits of an entry as they stand, ``None`` for what is no number."""
         match value:
             case StringValue():
@@ -172,9 +172,12 @@ class _TableReading:
                 shown = value.literal
             case _:
                 shown = ""
-        if shown == GAP or PRINTED.match(shown):
-            return shown
+        plain = shown if comma is None else shown.replace(",", comma)
+        if plain == GAP or PRINTED.match(plain):
+            return plain
         message = f'an entry of {self.what} must be the digits as printed, or "-" for a gap'
+        if PRINTED.match(shown.replace(",", "")):
+            message = f"the comma in {shown[:40]} of {self.what} may be a decimal comma or part thousands"
         self.reader.misfit(message, value, 'for instance "16.250"')
         return None
 
@@ -207,3 +210,15 @@ class _TableReading:
             reader.note("SF209", message, text.span, assuming(entry.key, "real"))
             return None
         return entry.key, value
+
+
+def _strings(items: Iterable[Value]) -> Iterator[str]:
+    """Yield the texts of entries."""
+    for item in items:
+        match item:
+            case StringValue():
+                yield item.text.value.strip()
+            case ArrayValue():
+                yield from _strings(item.items)
+            case TableValue() if (values := item.get("values")) is not None:
+                yield from _strings((values.value,))

@@ -89,8 +89,7 @@ CALLS: Final = {
 UNREAD: Final = {  # what begins no formula that could be judged, and what to do
     r"\infty": ("infinity is no number here", None),
     **dict.fromkeys((r"\lim", r"\int", r"\oint"), ("a limit or an integral is not read", None)),
-    r"\log": (r"\log may be the natural or the decimal logarithm", r"write \ln for the natural one"),
-    r"\lg": (r"\lg is a decimal logarithm", r"write \ln"),
+    r"\lg": (r"\lg may be the decimal or the binary logarithm", r"write \log_{10} or \log_2"),
     r"\th": (r"\th is not read", r"write \tanh"),
 }
 ARGUMENTS: Final = frozenset(  # what a function of time or frequency is written as a function of
@@ -135,6 +134,7 @@ class LatexReader(SymbolReader):
         self.written = 0
         self.open: dict[int, int] = {}  # where there are how many readings
         self.built: dict[int, Expression] = {}  # what was made of them
+        self.logarithm: int | None = None  # where the first one stands that does not say its base
 
     def choose(self, at: int, count: int) -> int:
         """Return which reading to take at a token that has so many."""
@@ -465,6 +465,7 @@ class LatexReader(SymbolReader):
         if name is None:
             return None
         self.at = end
+        base = self.base_of_logarithm(start) if self.tokens[start].text == r"\log" else None
         exponent: Expression | None = None
         if self.text == "^":
             self.take()
@@ -480,17 +481,33 @@ class LatexReader(SymbolReader):
         span = self.span(start)
         whole = RECIPROCALS.get(name, name)
         value: Expression = Call(whole, argument, span=span)
+        if base is not None:
+            value = Quotient(value, Call("log", base, span=span), span=span)
         if exponent is not None:
             value = Power(value, exponent, span=span)
         elif self.text == "^":
             value = self.expression_of(self.powers(value, start))
         return value if whole == name else Quotient(Number(Fraction(1)), value, span=span)
 
+    def base_of_logarithm(self, start: int) -> Expression | None:
+        """Return the base of a logarithm, ``None`` for a natural one; without an index it may be 10 or e."""
+        if self.text == "_":
+            self.take()
+            typed = self.group()
+            if isinstance(typed, Number) or (isinstance(typed, Name) and typed.name == "e"):
+                return typed if isinstance(typed, Number) else None
+            self.refuse("the base of a logarithm is a number or e", at=start)
+        # All of a formula have the same base, so a ratio of two is one formula.
+        self.logarithm = start if self.logarithm is None else self.logarithm
+        return Number(Fraction(10)) if self.choose(self.logarithm, 2) else None
+
     def function_name(self) -> tuple[str | None, int]:
         """Return the function that begins here, ``None`` for none, and where its name ends."""
         text = self.text
         if text in CALLS:
             return CALLS[text], self.at + 1
+        if text == r"\log":
+            return "log", self.at + 1
         if text in FONTS and self.ahead() == "{":
             end = group_end(self.tokens, self.at + 1)
             word = text_of(self.tokens[self.at + 2 : end - 1]).strip("\\")

@@ -14,7 +14,7 @@ A column that counts 1, 2, 3 ... says that each other column is a list of roots.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Final, NamedTuple
 
 from symflex.errors import Diagnostic, SpecError, Text
@@ -40,6 +40,13 @@ _TEN: Final = re.compile(r"(?:\\times|\\cdot)\s*10\s*\^\s*\{?\s*(-?\d{1,2})\s*\}
 _WRAPPED: Final = re.compile(
     r"\\(?:text|textbf|textit|mathbf|mathrm|num|bm|underline|emph|phantom)\s*\{([^{}]*)\}"
 )
+_COMMA: Final = re.compile(r"[-+]?\d+(,\d+)+(\.\d*)?([eE][-+]?\d{1,2})?\Z")
+_GROUPED: Final = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?([eE][-+]?\d{1,2})?\Z")
+_ORDINAL: Final = re.compile(
+    r"(?:[nijr] ?= ?|[a-z]{0,12}\.?[ _]*)?\(?(\d{1,2})(?:\)?\.?|\^?(?:st|nd|rd|th)(?: [a-z ]{0,30})?)\Z"
+)
+"""What numbers a mode: ``1``, ``2nd``, ``(3)``, ``Mode 4``, ``f_5``."""
+_WORDS: Final = "first second third fourth fifth sixth seventh eighth ninth tenth".split()
 _EMPTY: Final = frozenset(("", "-", "--", "---", "\u2013", "\u2014", r"\ldots", r"\dots", "n/a", "N/A"))
 
 
@@ -124,6 +131,22 @@ def printed_number(cell: str) -> str | None:
     return value if PRINTED.match(value) else None
 
 
+def comma_of(shown: Iterable[str]) -> str | None:
+    """Return what commas in the numbers of a table stand for: a point, or nothing; None if both may be.
+
+    >>> comma_of(["1,8751", "4,694"]), comma_of(["1,011.2", "986"]), comma_of(["1,875"])
+    ('.', '', None)
+    """
+    every = list(shown)
+    numbers = [each for each in every if _COMMA.match(each)]
+    has_point = any("." in each and PRINTED.match(each.replace(",", "")) for each in every)
+    are_grouped = all(map(_GROUPED.match, numbers))
+    has_two = any(each.count(",") > 1 for each in numbers)
+    if are_grouped and (has_point or has_two):
+        return ""
+    return None if are_grouped or has_point or has_two else "."
+
+
 def lists_of(cells: Sequence[Sequence[str]]) -> tuple[PrintedList, ...]:
     """Return the lists of numbers of a table: its columns where one counts the modes, else its rows.
 
@@ -134,11 +157,15 @@ def lists_of(cells: Sequence[Sequence[str]]) -> tuple[PrintedList, ...]:
     """
     width = max(map(len, cells), default=0)
     grid = [[*row, *[""] * (width - len(row))] for row in cells]
+    if (comma := comma_of(_bare(cell) for row in grid for cell in row)) is not None:
+        grid = [
+            [cell.replace(",", comma) if _COMMA.match(_bare(cell)) else cell for cell in row] for row in grid
+        ]
     numbers = [[printed_number(cell) for cell in row] for row in grid]
     columns = [[row[j] for row in numbers] for j in range(width)]
-    counting = next((j for j in range(min(width, 2)) if _counts(columns[j])), None)
+    counting = next((j for j in range(min(width, 2)) if _counted([row[j] for row in grid])), None)
     if counting is not None:
-        rows = [i for i, n in enumerate(columns[counting]) if n is not None and n.isdigit()]
+        rows = _counted([row[counting] for row in grid])
         first = rows[0]
         heads = {j: _heading(grid[:first], j) for j in range(width)}
         lists = [
@@ -159,10 +186,29 @@ def lists_of(cells: Sequence[Sequence[str]]) -> tuple[PrintedList, ...]:
     return tuple(each for each in lists if sum(e != GAP for e in each.entries) >= FEWEST)
 
 
-def _counts(column: Sequence[str | None]) -> bool:
-    """Tell whether a column counts 1, 2, 3 ... below its heading."""
-    found = [n for n in column if n is not None and n != GAP]
-    return len(found) >= FEWEST and found == [str(i) for i in range(1, len(found) + 1)]
+def _bare(cell: str) -> str:
+    """Return a cell without the dollars and the spaces that do not show in a number."""
+    return re.sub(r"[$\s]|\\[,;:! ]", "", cell)
+
+
+def _counted(column: Sequence[str]) -> list[int]:
+    """Return the rows that a column counts 1, 2, 3 ... below its heading; none if it does not."""
+    found = [(i, n) for i, n in enumerate(map(_ordinal, column)) if n]
+    is_counting = [n for _, n in found] == list(range(1, len(found) + 1))
+    return [i for i, _ in found] if is_counting and len(found) >= FEWEST else []
+
+
+def _ordinal(cell: str) -> int:
+    """Return the number of a mode, 0 for what is none."""
+    value = cell.strip()
+    while (plain := _WRAPPED.sub(r"\1", value)) != value:
+        value = plain
+    value = re.sub(r"\\[a-zA-Z]+\s*", "x", re.sub(r"[${}]|\\[,;:! ]|~", "", value)).lower().strip()
+    words = value.split()
+    if words and words[0] in _WORDS:
+        return _WORDS.index(words[0]) + 1
+    match = _ORDINAL.match(value)
+    return int(match[1]) if match else 0
 
 
 def _is_label(column: Sequence[str | None]) -> bool:

@@ -176,7 +176,7 @@ class _Court:
             Span, str
         ] = {}  # equations that define what other formulas contain, and what they define
         self.derived: dict[tuple[int, tuple[str, str]], object] = {}
-        self.tied: dict[tuple[int, str], tuple[str, str]] = {}  # what a letter is, by model
+        self.tied: dict[tuple[int, str], dict[tuple[str, str], None]] = {}  # what a letter is, by model
         for display in paper.displays:
             try:
                 if display.problem is not None:
@@ -227,9 +227,11 @@ class _Court:
         number_of = self.models.index(model)
         for pair in model.transfer_functions:  # H = X/F = ... says what H is, also where it comes again
             if any(side == Quotient(*map(Name, pair)) for side in sides):
-                self.tied |= {(number_of, side.name): pair for side in sides if isinstance(side, Name)}
+                for side in sides:
+                    if isinstance(side, Name):
+                        self.tied.setdefault((number_of, side.name), {}).setdefault(pair)
         if not claims and isinstance(sides[0], Name) and (number_of, sides[0].name) in self.tied:
-            claims = [(self.tied[number_of, sides[0].name], sides[-1])]
+            return self.by_letter(item, model, sides[0].name, sides[-1], notation)
         if not claims:
             raise _Unjudged("other model", "it names no transfer function of the models")
         best: JudgedFormula | None = None
@@ -239,6 +241,27 @@ class _Court:
                 best = judged  # of G = a = b the worst side counts
         assert best is not None
         return best
+
+    def by_letter(
+        self, item: _Item, model: Model, letter: str, formula: Expression, notation: PaperNotation
+    ) -> JudgedFormula:
+        """Return the verdict on a formula for what the paper calls by a letter, which may be several."""
+        tied = [*self.tied[self.models.index(model), letter]]
+        found = min((self.best(item, model, tf, formula, notation) for tf in tied), key=_rank)
+        if found.verdict == "different":
+            try:
+                found = self.best(item, model, None, formula, notation)
+            except _Unjudged:
+                pass  # it is no other function either
+        if found.audit is None:
+            return found
+        own = found.audit.tf.name
+        known = ["/".join(tf) for tf in tied]
+        listed = " and ".join(dict.fromkeys([*known, own]))
+        if listed == known[0] and len(known) == 1:
+            return found
+        said = f"{letter} is {listed} in this paper; this is compared with {own}"
+        return replace(found, reason=f"{found.reason}; {said}" if found.reason else said)
 
     def best(
         self,

@@ -462,6 +462,8 @@ damper = { type = "damper", between = ["x", "ground"], b = "c" }
         ("0.5/(s^2 + 2*s + 200)", "differs", ("m", "c", "k"), [("denominator", "200", "400")]),
         ("1/(2*s^2 - 4*s + k)", "differs", ("m", "c"), [("denominator", "-4*s", "4*s")]),
         ("1/(m*s^2 + k)", "differs", (), [("denominator", "0", "c*s")]),
+        ("1/m/(s^2 + 2*c*s/m + k/m)", "differs", (), [("denominator", "2*c*s/m", "c*s/m")]),
+        ("1/m/(s^2 + c*s/m + k/(3*m))", "differs", (), [("denominator", "k/(3*m)", "k/m")]),
     ],
 )
 def test_a_formula_with_numbers_is_compared_at_the_models_values(expr, verdict, numeric, changes):

@@ -166,6 +166,11 @@ Mode & \multicolumn{2}{c|}{Frequency (Hz)} \\ \cline{2-3}
 """
 
 
+def test_a_decimal_comma_is_a_point_where_no_thousands_can_be_meant():
+    found = judged(CHAIN, 'prints = "omega"\nvalues = ["27,2251", "112,215"]')
+    assert verdicts(found) == ["right", "right"]
+
+
 def test_a_tabular_is_read_as_it_is_typed():
     # The cantilever's frequencies are those of Blevins' wavenumbers: 28.336, 177.58 and 497.23 Hz.
     found = judged(BEAM, f"latex = '''{TABULAR}'''")
@@ -211,7 +216,7 @@ def test_zeros_and_damping_ratios():
         ('prints = "omega*q"\nvalues = ["1"]', "SF210"),
         ("latex = 'a & b'", "SF208"),
         ('values = ["1"]\nlatex = "1 & 2"', "SF214"),
-        ('values = ["1,5"]', "SF206"),
+        ('values = ["1,875"]', "SF206"),
         ('values = ["1e999"]', "SF206"),
         ("values = [true]", "SF206"),
         ('rows = "1"', "SF206"),

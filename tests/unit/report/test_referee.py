@@ -65,6 +65,19 @@ def test_each_displayed_formula_gets_its_verdict(model: Model) -> None:
     assert found["sum"][0] == "not read"
 
 
+def test_a_letter_may_be_two_functions_of_a_paper(model: Model) -> None:
+    # G is X_1/F in the first line; its other values are X_2/F, as in the third, and a slip of X_1/F.
+    paper = r"""\begin{align}
+G(s) = \frac{X_1(s)}{F(s)} &= \frac{Ms^2 + bs + k}{s^2[m_1 M s^2 + (m_1+M)(bs+k)]} \\
+G(s) &= \frac{bs + k}{s^2[m_1 M s^2 + (m_1+M)(bs+k)]} \\
+G(s) &= \frac{Ms^2 + bs + 2k}{s^2[m_1 M s^2 + (m_1+M)(bs+k)]}
+\end{align}"""
+    first, second, third = judged(model, paper)
+    assert (first.verdict, second.verdict, third.verdict) == ("equal", "equal", "different")
+    assert second.reason == "G is X_1/F and X_2/F in this paper; this is compared with X_2/F"
+    assert third.slip == "numerator: 2*k should be k"
+
+
 def test_one_equation_is_judged_alone(model: Model) -> None:
     (alone,) = judged(model, only="3")
     assert (alone.label, alone.verdict, alone.span.line) == ("(3)", "factor", 6)
