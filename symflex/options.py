@@ -445,6 +445,45 @@ class StabilityOptions:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class ContactOptions:
+    """Options of ``symflex contact``. Python gives SI units."""
+
+    port: str = option("", "--port", required=True, metavar="NAME", help="A port of [ports], or a node.")
+    environment: str = option(
+        "",
+        "--environment",
+        required=True,
+        metavar="LAW",
+        help='What touches it: "k_e + b_e*s + m_e*s^2", spring, damper, mass, spring-damper, wall or any.',
+    )
+    over: Sequence[str] = option(
+        (),
+        "--over",
+        multiple=True,
+        metavar="P",
+        help="A parameter, of the environment or of SPEC; twice: a chart.  [default: what has no value]",
+    )
+    limits: tuple[Stated | None, Stated | None] | None = option(
+        None,
+        "--range",
+        **TWO,
+        help='Only values between two: 0 "5 kN/m"; with several letters the name goes first.  [default: all '
+        "positive ones of the environment; else as for symflex stability]",
+    )
+    ranges: Sequence[tuple[str, Stated, Stated]] = option(
+        (), "--range-of", nargs=3, multiple=True, hidden=True, metavar="P LO HI"
+    )
+    up_to: Stated | None = option(
+        None, "--up-to", metavar="VALUE", help="Largest value of the environment's one letter."
+    )
+    digits: int | None = option(
+        None, "--digits", least=1, most=1000, help="Correct significant digits.  [default: 15]"
+    )
+    resolve: Stated = option("1 %", "--resolve", metavar="SHARE", **SHOWN, help="As for symflex stability.")
+    as_json: bool = option(False, "--json", **JSON)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class PeakOptions:
     """Options of ``symflex peak``. Python gives Hz."""
 

@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from symflex.api.live import LivePage
     from symflex.api.sweep import Sweep
     from symflex.codegen.export import Exporter
+    from symflex.contact.coupled import CoupledStability
     from symflex.figures import AxesGiven
     from symflex.letters.routh import Conditions
     from symflex.loops import DynamicColocation
@@ -90,6 +91,7 @@ class Model:
     resolved: model_layer.Model
     _source: Source = field(compare=False, repr=False)  # its text
     _values: Mapping[str, Setting] = field(compare=False, repr=False)  # given in place of those of the text
+    _outside: tuple[str | Path, ...] = field(compare=False, repr=False)  # folders that blocks may read, too
 
     def __init__(
         self,
@@ -136,8 +138,10 @@ class Model:
     def _resolve(
         self, source: Source, values: Mapping[str, Setting], allow_outside: Iterable[str | Path]
     ) -> None:
-        resolved = pipeline.load_with(source, values, allow_outside=allow_outside)
-        for name, value in (("resolved", resolved), ("_source", source), ("_values", dict(values))):
+        outside = tuple(allow_outside)
+        resolved = pipeline.load_with(source, values, allow_outside=outside)
+        told = {"resolved": resolved, "_source": source, "_values": dict(values), "_outside": outside}
+        for name, value in told.items():
             object.__setattr__(self, name, value)
 
     def to_toml(self, path: str | Path | None = None) -> str:
@@ -470,6 +474,74 @@ class Model:
                 return Stability(stability(self.resolved, given, values))
             proved = stability_over(self.resolved, given, values)
             return proved if isinstance(proved, StabilityChart) else Stability(proved)
+
+    def contact(
+        self,
+        port: str,
+        environment: str,
+        *,
+        over: str | tuple[str, ...] = (),
+        ranges: Mapping[str, tuple[float, float]] | None = None,
+        up_to: float | str | None = None,
+        digits: int = 15,
+        resolve: float = 0.01,
+        budget: float | None = None,
+        **values: Number,
+    ) -> CoupledStability:
+        """Return whether the machine is stable with an environment at a port, proved.
+
+        Parameters
+        ----------
+        port : str
+            A port of ``[ports]``, or a node.
+        environment : str
+            A force over a displacement, such as ``"k_e + b_e*s + m_e*s^2"``; in circuits a voltage over a
+            current. Or a class: spring, damper, mass, spring-damper, wall. Names that the model does not
+            have become parameters.
+        over : str or tuple of str
+            Parameters of the environment or of the model; two of them make a chart. By default the letters of
+            the environment without a value, of two of which all combinations are meant.
+        ranges : mapping, optional
+            Ranges of these in SI units. By default all positive values of a letter of the environment.
+        up_to : float or str, optional
+            The largest value of the environment's one letter.
+        digits, resolve, budget :
+            As for :meth:`stability`.
+        **values : number or str
+            In place of declared values, and of letters of the environment.
+
+        Returns
+        -------
+        CoupledStability
+            ``is_stable``, ``certified``, and the ``answer``: a map, a chart, or poles.
+
+        Raises
+        ------
+        UsageError
+            SF902 a letter without a value, SF210 no such port, SF804 a range that needs an end.
+        SpecError
+            An environment with a mistake, such as a unit that does not fit.
+
+        Examples
+        --------
+        >>> parameters = {"m": "2 kg", "b": "3 N*s/m", "K": "100 N/m", "T": "0.05 s"}
+        >>> hand = {"body": {"type": "mass", "at": "x", "m": "m"}, "f": {
+        ...     "type": "damper", "between": ["x", "ground"], "b": "b"}, "wall": {
+        ...     "type": "force_source", "at": "x", "f": "-K*exp(-s*T)*x"}}
+        >>> model = Model(
+        ...     parameters=parameters, elements=hand, inputs={"F": {"force": "x"}}, outputs={"X": "x"})
+        >>> model.contact("x", "damper", up_to=10)
+        <CoupledStability at x: not stable for all values>
+        """
+        from symflex.contact.coupled import coupled_stability  # imports numpy
+        from symflex.options import ContactOptions
+
+        names = (over,) if isinstance(over, str) else tuple(over)
+        each = tuple((name, *ends) for name, ends in (ranges or {}).items())
+        digits = checked_digits(digits)
+        given = ContactOptions(port, environment, names, None, each, up_to, digits, resolve)
+        with budget_of(budget).besides().entered():
+            return coupled_stability(self._source, given, {**self._values, **values}, self._outside)
 
     def conditions(
         self, of: str = "poles", tf: str | None = None, *, over: tuple[str, str] | None = None

@@ -27,6 +27,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "shape": ("respond", "Print an input shaper: impulses that leave no vibration."),
     "sweep": ("analyses", "Solve a model at many values of its parameters."),
     "stability": ("analyses", "Print the values of a gain, or any parameter, for which a model is stable."),
+    "contact": ("analyses", "Print whether a model is stable with what touches it."),
     "peak": ("respond", "Print the largest magnitude over all frequencies."),
     "colocation": ("analyses", "Print the frequency up to which two outputs move together."),
     "draw": ("plot", "Draw the model as a textbook would."),
@@ -47,7 +48,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
 GROUPS = {  # how the help lists them
     "Begin": "new examples elements units schema",
     "Model": "check derive draw",
-    "Analyse": "roots rational respond shape sweep stability peak colocation",
+    "Analyse": "roots rational respond shape sweep stability contact peak colocation",
     "Draw and export": "plot live export report",
     "Papers and measurements": "audit referee fit measure",
 }

@@ -13,7 +13,14 @@ from symflex.budget import entered_budget
 from symflex.cli.command import Command, Specification, command_of, first_pair
 from symflex.cli.reporting import answer, emit_json, note, say, show_error, terminal_width
 from symflex.errors import BudgetError, refused
-from symflex.options import ColocationOptions, RationalOptions, RootsOptions, StabilityOptions, SweepOptions
+from symflex.options import (
+    ColocationOptions,
+    ContactOptions,
+    RationalOptions,
+    RootsOptions,
+    StabilityOptions,
+    SweepOptions,
+)
 
 if TYPE_CHECKING:
     from symflex.analysis.sensitivity import RootDerivative
@@ -183,6 +190,29 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
             stable = stability_over(model, given) if given.over else of_model.stability(model, given)
     answer(given.as_json, stable.to_json_dict, lambda: str(stable))
     return 0 if stable.certified else 4
+
+
+@command_of("contact", ContactOptions, Ranged)
+def contact(spec: Specification, given: ContactOptions) -> int:
+    """Print whether SPEC is stable with an environment at a port.
+
+    The environment is a force over a displacement, such as "k_e + b_e*s + m_e*s^2"; in circuits it is a
+    voltage over a current. Names that SPEC does not have become parameters: give them values with --set, or
+    ask for them with --over. Without either, all positive values of one are examined, or all combinations of
+    two.
+
+    The classes spring, damper, mass and spring-damper are the laws k_e, b_e*s, m_e*s^2 and k_e + b_e*s. With
+    wall, nothing moves at the port.
+
+    Exit code 4: something is not certified, as the output lists.
+    """
+    from symflex.cli.progress import ProgressBar
+    from symflex.contact.coupled import coupled_stability
+
+    with ProgressBar() as bar, entered_budget().reporting_to(bar).entered():
+        found = coupled_stability(spec.source(), given, spec.settings, spec.allow_outside)
+    answer(given.as_json, found.to_json_dict, lambda: str(found))
+    return 0 if found.certified else 4
 
 
 @command_of("colocation", ColocationOptions)

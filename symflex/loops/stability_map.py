@@ -18,7 +18,7 @@ from symflex.roots.pole_zero_map import WITHOUT_END, StabilityVerdict
 from symflex.roots.root import degrees, hertz, real_json, short_hertz
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from symflex.loops.peak import LoopPeaks
 
@@ -238,25 +238,33 @@ class StabilityMap(Printed):
         unit, size = self.counted_in or (self.unit, Fraction(1))
         if size == 1:
             return replace(self, unit=unit)
+        return self.in_terms_of(self.gain, unit, lambda gain: gain * ball(1 / size), lambda gain: gain / size)
 
-        def enclosed(gain: arb | None) -> arb | None:
+    def in_terms_of(
+        self, name: str, unit: str, enclosed: Callable[[arb], arb], exact: Callable[[Fraction], Fraction]
+    ) -> StabilityMap:
+        """Return the map over an increasing function of the gain, which takes a ball and an exact number."""
+
+        def ball_of(gain: arb | None) -> arb | None:
             with precision(max(BITS, bits_for_digits(self.digits) + BITS)):
-                return None if gain is None else gain * ball(1 / size)
+                return None if gain is None else enclosed(gain)
 
-        def exact(gain: Fraction | None) -> Fraction | None:
-            return None if gain is None else gain / size
+        def value_of(gain: Fraction | None) -> Fraction | None:
+            return None if gain is None else exact(gain)
 
-        moved = self.with_boundaries([replace(b, gain=enclosed(b.gain) or b.gain) for b in self.boundaries])
-        crossover = self.crossover and replace(self.crossover, gain=exact(self.crossover.gain))
+        moved = self.with_boundaries([replace(b, gain=ball_of(b.gain) or b.gain) for b in self.boundaries])
+        crossover = self.crossover and replace(self.crossover, gain=value_of(self.crossover.gain))
+        at_end = None if self.data is None or self.data.gain is None else Fraction(self.data.gain)
         return replace(
             moved,
+            gain=name,
             unit=unit,
             counted_in=None,
-            limits=(exact(self.limits[0]), exact(self.limits[1])),
-            intervals=tuple(replace(i, low=enclosed(i.low), high=enclosed(i.high)) for i in self.intervals),
-            nominal=exact(self.nominal),
+            limits=(value_of(self.limits[0]), value_of(self.limits[1])),
+            intervals=tuple(replace(i, low=ball_of(i.low), high=ball_of(i.high)) for i in self.intervals),
+            nominal=value_of(self.nominal),
             margins=replace(moved.margins, crossover=crossover),
-            data=self.data and replace(self.data, gain=self.data.gain and self.data.gain / float(size)),
+            data=self.data and replace(self.data, gain=None if at_end is None else float(exact(at_end))),
         )
 
     def with_boundaries(self, boundaries: Sequence[Boundary]) -> StabilityMap:

@@ -1,0 +1,224 @@
+"""Environments: what touches a machine at a port, as elements of its specification.
+
+Input: the text of a specification, a port and what is there: an expression, the name of a class, or another
+specification with its port. Output: an :class:`Environment`, and the specification with it.
+
+Example: ``k_e + b_e*s + m_e*s^2`` at a node that moves is a spring and a damper to ground and a mass: force
+over displacement, its dynamic stiffness. In a circuit it is the impedance, voltage over current, and in a
+duct pressure over flow. Names that the specification does not have become its parameters; their units follow
+from the place, as those of all parameters do.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Container, Mapping
+from dataclasses import dataclass
+from itertools import chain, count
+from types import MappingProxyType
+from typing import Any, Final
+
+from symflex.algebra import LAPLACE
+from symflex.errors import Source, Text, refused
+from symflex.expressions import (
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Power,
+    Product,
+    Quotient,
+    Sum,
+    format_expression,
+    names_among,
+    negative,
+    nodes,
+    number,
+    parse,
+    product_of,
+    quotient,
+    sum_of,
+)
+from symflex.library.elements import ELEMENTS
+from symflex.model import ContactPort, Model, NodeReference
+from symflex.model.model import IMAGINARY
+from symflex.model.spec.positions import Literal
+from symflex.model.spec.write import write
+from symflex.quantities import looks_like_quantity
+
+ANY: Final = "any"  # every passive environment
+OPTION: Final = "--environment"
+PARTS: Final[Mapping[str, tuple[tuple[str, str], ...]]] = {
+    "translation": (("spring", "k"), ("damper", "b"), ("mass", "m")),
+    "rotation": (("torsion_spring", "k"), ("rotary_damper", "b"), ("inertia", "J")),
+    "electrical": (("resistor", "R"),),
+    "acoustic": (("acoustic_resistance", "R"),),
+}
+"""Elements whose value stands beside each power of s, with their parameter; all else is the first."""
+_MECHANICAL: Final = ("spring", "damper", "mass", "spring-damper", "wall")
+CLASSES: Final[Mapping[str, Mapping[str, tuple[tuple[str, str], ...]]]] = {
+    domain: dict(zip(_MECHANICAL, (*((part,) for part in parts), parts[:2], ()), strict=True))
+    for domain, parts in PARTS.items()
+    if len(parts) > 1
+} | {
+    "electrical": {
+        "resistor": (("resistor", "R"),),
+        "inductor": (("inductor", "L"),),
+        "capacitor": (("capacitor", "C"),),
+        "short": (),
+    },
+    "acoustic": {
+        "resistance": (("acoustic_resistance", "R"),),
+        "mass": (("acoustic_mass", "M"),),
+        "compliance": (("acoustic_compliance", "C"),),
+        "short": (),
+    },
+}
+"""Elements of each class with their parameter, by domain; one without any holds the port still."""
+
+
+@dataclass(frozen=True)
+class Environment:
+    """What is at a port: elements from the port to ground or to its second node."""
+
+    port: ContactPort
+    text: str  # as printed
+    elements: tuple[tuple[str, str, str], ...]  # type, parameter and value of each; none where it is held
+    letters: tuple[str, ...] = ()  # names in the values that the model does not have
+
+    @property
+    def is_wall(self) -> bool:
+        """Whether it holds the port still."""
+        return not self.elements
+
+
+def read_environment(model: Model, port: ContactPort, text: str) -> Environment:
+    """Return what an expression or the name of a class says; SF902 for what is neither.
+
+    Raises SpecError: SF1xx for an expression with a mistake, at its place.
+    """
+    classes, parts = CLASSES[port.domain], PARTS[port.domain]
+    if text in classes:
+        taken = {p.name for p in model.parameters} | {d.name for d in model.definitions}
+        letters = tuple(_free(f"{key}_e", taken) for _, key in classes[text])
+        elements = tuple((*part, letter) for part, letter in zip(classes[text], letters, strict=True))
+        return Environment(port, text, elements, letters)
+    if text in {name for others in CLASSES.values() for name in others}:
+        raise refused(
+            f"'{text}' is no environment of a port in {port.domain}", f"there are: {', '.join(classes)}"
+        )
+    if looks_like_quantity(text):
+        return Environment(port, text, ((*parts[0], text),))
+    expression = parse(Text.alone(OPTION, text))
+    letters = _letters(model, expression)
+    powers = _by_powers(expression, model) if len(parts) > 1 else None
+    most = len(parts) - len(port.nodes)  # a mass is at one node
+    values = powers if powers is not None and max(powers) <= most else {0: expression}
+    elements = tuple((*parts[n], format_expression(value)) for n, value in sorted(values.items()))
+    return Environment(port, format_expression(expression), elements, letters)
+
+
+def with_environment(
+    source: Source, model: Model, environment: Environment, scales: Mapping[str, str] = MappingProxyType({})
+) -> Source:
+    """Return a specification with an environment; errors in it are at places of this new text.
+
+    Of a letter in ``scales``, quantities, every positive value is meant: it is ``scale*share/(1 - share)``
+    with a share between 0 and 1, a parameter whose name :func:`share_name` returns.
+    """
+    spec: dict[str, Any] = tomllib.loads(source.text, parse_float=Literal)
+    parameters, definitions = {**spec.get("parameters", {})}, {**spec.get("definitions", {})}
+    for letter in environment.letters:
+        if letter not in scales:
+            parameters[letter] = {"assume": "nonnegative"}
+            continue
+        share, scale = share_name(letter), f"{letter}_scale"
+        parameters |= {share: {"assume": "nonnegative"}, scale: scales[letter]}
+        definitions[letter] = f"{scale}*{share}/(1 - {share})"
+    places = [_written(model, reference, environment.port) for reference in environment.port.nodes]
+    between = [*places, "ground"][:2]
+    elements: dict[str, object] = {**spec.get("elements", {})}
+    if environment.is_wall:
+        held = {"at": places[0]} if between[1] == "ground" else {"between": between}
+        elements[_free("wall", elements)] = {"type": "fixed", **held}
+    for kind, key, value in environment.elements:
+        (attached,) = ELEMENTS[kind].ports
+        at = places[0] if attached.terminals == 1 else between
+        elements[_free(f"environment_{key}", elements)] = {"type": kind, attached.name: at, key: value}
+    spec |= {"parameters": parameters, "elements": elements}
+    spec |= {"definitions": definitions} if definitions else {}
+    spec.pop("ports", None)  # a wall would hold one
+    return Source(f"{source.name} with {environment.text}", write(spec))
+
+
+def share_name(letter: str) -> str:
+    """Return the name of the parameter that stands for all positive values of a letter."""
+    return f"{letter}_share"
+
+
+def _letters(model: Model, expression: Expression) -> tuple[str, ...]:
+    """Return the names of an expression that a model does not have; SF902 for what varies in time."""
+    known = {p.name for p in model.parameters} | {d.name for d in model.definitions}
+    known |= {b.name for b in model.blocks} | {LAPLACE, "pi", IMAGINARY}
+    varying = {n.name: "a node" for n in model.nodes} | {s.name: "a signal" for s in model.signals}
+    varying |= {i.name: "an input" for i in model.inputs}
+    new: dict[str, None] = {}
+    for node in nodes(expression):
+        if isinstance(node, Name) and node.name not in known:
+            if node.name in varying:
+                message = f"'{node.name}' is {varying[node.name]}: an environment is a law of s and constants"
+                raise refused(message, f"for instance {OPTION} 'k_e + b_e*s'")
+            new[node.name] = None
+    return tuple(new)
+
+
+def _by_powers(expression: Expression, model: Model) -> dict[int, Expression] | None:
+    """Return what stands beside each power of s; None where it is no polynomial, or may hide s."""
+    hiding = {d.name for d in model.definitions} | {b.name for b in model.blocks}
+    if names_among(expression, hiding):
+        return None
+    terms: dict[int, list[Expression]] = {}
+    for term in expression.terms if isinstance(expression, Sum) else (expression,):
+        monomial = _monomial(term)
+        if monomial is None:
+            return None
+        terms.setdefault(monomial[0], []).append(monomial[1])
+    return {n: sum_of(values) for n, values in terms.items()}
+
+
+def _monomial(term: Expression) -> tuple[int, Expression] | None:
+    """Return the power of s in a product and what else it holds; None where s stands elsewhere."""
+    if not names_among(term, {LAPLACE}):
+        return 0, term
+    match term:
+        case Name():
+            return 1, number(1)
+        case Power(base=Name(), exponent=Number(value=n)) if n.denominator == 1 and n >= 0:
+            return int(n), number(1)
+        case Negative():
+            inner = _monomial(term.operand)
+            return inner and (inner[0], negative(inner[1]))
+        case Quotient() if not names_among(term.denominator, {LAPLACE}):
+            inner = _monomial(term.numerator)
+            return inner and (inner[0], quotient(inner[1], term.denominator))
+        case Product():
+            factors = [_monomial(f) for f in term.factors]
+            if None in factors:
+                return None
+            found = [f for f in factors if f is not None]
+            return sum(n for n, _ in found), product_of([value for _, value in found])
+    return None
+
+
+def _written(model: Model, reference: NodeReference, port: ContactPort) -> str:
+    """Return a port's node as an element names it: the part of a planar one."""
+    node = next((n for n in model.nodes if n.name == reference.node), None)
+    if node is None or node.components == ("",):
+        return reference.node
+    component = reference.component or ("theta" if port.domain == "rotation" else "y")
+    return f"{reference.node}.{component}"
+
+
+def _free(name: str, taken: Container[str]) -> str:
+    """Return a name that nothing has: this one, or with a number."""
+    return next(n for n in chain((name,), (f"{name}_{i}" for i in count(2))) if n not in taken)
