@@ -154,6 +154,11 @@ class DeriveOptions:
     is_matrix: bool = option(False, "--matrix", **MATRIX)
     inputs: str = option("", "--in", **ENDS, help="--matrix: inputs, such as u1,u2.  [default: all]")
     outputs: str = option("", "--out", **ENDS, help="--matrix: outputs, such as y1,y2.  [default: all]")
+    is_rga: bool = option(
+        False,
+        "--rga",
+        help="--matrix: print static gains, their inverse and relative gains at s = 0, in letters.",
+    )
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from symflex import model as model_layer
     from symflex.api.live import LivePage
     from symflex.api.sweep import Sweep
+    from symflex.api.transfer_matrix import TransferMatrix
     from symflex.codegen.export import Exporter
     from symflex.contact.coupled import CoupledStability
     from symflex.figures import AxesGiven
@@ -302,6 +303,27 @@ class Model:
     def transfer_functions(self) -> tuple[TransferFunction, ...]:
         """Derive every output over every input, sharing one elimination."""
         return self._derived(self.resolved.transfer_functions)
+
+    def transfer_matrix(
+        self, outputs: Sequence[str] | str = (), inputs: Sequence[str] | str = ()
+    ) -> TransferMatrix:
+        """Derive all functions of some outputs and inputs as a matrix over their common denominator.
+
+        Parameters
+        ----------
+        outputs, inputs : sequence of str or str, optional
+            Names, or one of them; by default all.
+
+        Raises
+        ------
+        UsageError
+            SF902 when there is no such output or input.
+        """
+        from symflex.api.transfer_matrix import TransferMatrix
+        from symflex.matrices import derive_matrix
+
+        rows, columns = ([names] if isinstance(names, str) else names for names in (outputs, inputs))
+        return TransferMatrix(derive_matrix(self.resolved, rows, columns))
 
     def _derived(self, pairs: Sequence[tuple[str, str]]) -> tuple[TransferFunction, ...]:
         try:

@@ -236,6 +236,8 @@ def refuse_ends(given: DeriveOptions) -> None:
     """Refuse names of inputs and outputs without the matrix whose rows and columns they choose."""
     if given.inputs or given.outputs:
         raise refused("--in and --out choose the columns and rows of a matrix", "add --matrix, or name --tf")
+    if given.is_rga:
+        raise refused("--rga is for a matrix", "add --matrix")
 
 
 def names_of_ends(given: DeriveOptions) -> tuple[list[str], list[str]]:
@@ -262,6 +264,17 @@ def _matrix(spec: Specification, given: DeriveOptions) -> int:
     representation = chosen_representation(given.representation, given.form)
     is_json = given.as_json or given.format == "json"
     matrix = derive_matrix(spec.load(), outputs, inputs, representation, is_read=not is_json)
+    if given.is_rga:
+        from symflex.matrices.interaction import interaction
+
+        if given.form or given.width or given.format not in ("text", "json"):
+            raise refused("--rga prints text or --json, in no form")
+        found = interaction(matrix)
+        if is_json:
+            emit_json(notations.interaction_json(found))
+        else:
+            say(notations.interaction_text(found, terminal_width()))
+        return 0
     if matrix.reason:
         note(matrix.reason)
     form = print_matrix(matrix, given.form, given.digits)

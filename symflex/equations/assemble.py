@@ -344,7 +344,7 @@ class _Assembly:
         most = SPARSE_LIMIT if self.ring.is_sparse else UNKNOWN_LIMIT
         if count > most:
             raise _too_large(f"{count} unknowns; at most {most} are solved for", "split the model")
-        return Equations(
+        equations = Equations(
             self.model,
             self.ring,
             definitions,
@@ -358,6 +358,11 @@ class _Assembly:
             tuple(self._pieces() if self.is_cut else self.continua),
             self.distributed is not None and self.distributed.is_split,
         )
+        if not self.model.imposed:
+            return equations
+        from symflex.equations.imposed import impose  # few models are turned round
+
+        return impose(equations, self.model.imposed)
 
     def _cleared(self) -> Factored:
         """Return the product of denominators of line elements and conditions: others are no dynamics."""

@@ -3,3 +3,18 @@
 Input: a model, with the names of outputs and inputs. Output: the numerators of all pairs over one common
 denominator, and what follows from these.
 """
+
+from symflex.matrices.interaction import Interaction, interaction
+from symflex.matrices.inverse import Imposed, determinant, impose_all, inverse
+from symflex.matrices.notations import (
+    interaction_json,
+    interaction_text,
+    matrix_display,
+    matrix_json,
+    matrix_latex,
+    matrix_mathml,
+    matrix_sympy,
+    matrix_text,
+)
+from symflex.matrices.printed import MatrixForm, print_matrix
+from symflex.matrices.transfer_matrix import BoundMatrix, TransferMatrix, derive_matrix

@@ -14,7 +14,8 @@ from functools import cached_property
 from textwrap import wrap
 from typing import TYPE_CHECKING, Final
 
-from symflex.expressions import Expression, format_expression, is_number, quotient, sum_of
+from symflex.expressions import Expression, format_expression, is_number, names_in, number, quotient, sum_of
+from symflex.matrices.interaction import Gains, Interaction
 from symflex.matrices.printed import MatrixForm
 from symflex.matrices.transfer_matrix import TransferMatrix
 from symflex.model import Input, Output
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from symflex.print.mathml import MathRow
 
 SCHEMA: Final = "symflex.matrix/1"
+INTERACTION: Final = "symflex.interaction/1"
 APART: Final = "   "  # between the columns of a matrix
 INLINE: Final = 24  # characters of a denominator that stands in a fraction before a matrix
 
@@ -138,6 +140,54 @@ def _quantities(matrix: TransferMatrix, width: int) -> list[str]:
             f"{kind}: {', '.join(names)}", width, initial_indent=INDENT, subsequent_indent=INDENT * 2
         )
     return lines
+
+
+def interaction_text(found: Interaction, width: int = WIDTH) -> str:
+    """Return static gains, static decoupling and relative gains for a terminal, each with its numbers."""
+    lines = [f"{_ends(found.matrix.outputs)} / {_ends(found.matrix.inputs)}", ""]
+    for title, head, gains in _named(found):
+        if gains is None and title == "static decoupling" and found.gains is None:
+            continue
+        if gains is None:
+            lines += [f"{INDENT}{title}: none, a value is infinite at s = 0", ""]
+            continue
+        said = found.said(gains)
+        form = MatrixForm(title, number(1), number(1), said)
+        picture = _picture(f"{head} = ", form, "1")
+        numbers = found.numbers(gains)
+        lines += [f"{INDENT}{title}", ""]
+        if max(map(len, picture)) <= width or numbers == said:
+            lines += picture
+        else:
+            for i, row in enumerate(said, 1):
+                for j, e in enumerate(row, 1):
+                    lines += hanging(f"{INDENT}{head}_{i}{j} = ", e, width)
+        if numbers is not None and any(names_in(e) for row in said for e in row):
+            lines += ["", *_picture(" " * len(head) + " = ", replace(form, entries=numbers), "1")]
+        lines.append("")
+    return "\n".join(lines).rstrip()
+
+
+def _named(found: Interaction) -> tuple[tuple[str, str, Gains | None], ...]:
+    return (
+        ("static gains", "G(0)", found.gains),
+        ("static decoupling", "G(0)^-1", found.decoupling),
+        ("relative gains", "RGA(0)", found.relative),
+    )
+
+
+def interaction_json(found: Interaction) -> dict[str, object]:
+    """Return the document ``symflex derive --matrix --rga --json`` prints."""
+    document: dict[str, object] = {
+        "schema": INTERACTION,
+        "outputs": [o.name for o in found.matrix.outputs],
+        "inputs": [i.name for i in found.matrix.inputs],
+    }
+    for title, _, gains in _named(found):
+        said = gains and [[format_expression(e) for e in row] for row in found.said(gains)]
+        values = gains and found.values(gains)
+        document[title.replace(" ", "_")] = gains and {"is": said, "values": values}
+    return document
 
 
 def matrix_json(matrix: TransferMatrix, form: MatrixForm) -> dict[str, object]:

@@ -23,9 +23,9 @@ from functools import cached_property
 from math import lcm
 from typing import TYPE_CHECKING, Generic, TypeVar
 
-from symflex.algebra import Factored, KernelTable, Ring
+from symflex.algebra import NO_KERNELS, Factored, KernelTable, Ring
 from symflex.algebra.dispersion import Dispersion, Kernel
-from symflex.errors import BudgetError, Diagnostic, no_such
+from symflex.errors import BudgetError, Diagnostic, no_such, refused
 from symflex.model import Input, Model, Output
 from symflex.transfer import (
     AnyBoundFunction,
@@ -37,7 +37,7 @@ from symflex.transfer import (
 from symflex.transfer.bind import Given
 from symflex.transfer.bound import radicals_at
 from symflex.transfer.lowest_terms import LineImages, cancel
-from symflex.transfer.of_model import derive_as, derive_in_base_lengths
+from symflex.transfer.of_model import derive_alike, derive_as
 
 if TYPE_CHECKING:
     import numpy as np
@@ -89,7 +89,8 @@ class _PairTable(Generic[Pair]):
         width = self.shape[1]
         return tuple(tuple(values[i : i + width]) for i in range(0, len(values), width))
 
-    def _nested(self) -> BudgetError:
+    def nested_error(self) -> BudgetError:
+        """Return the error that nested pairs have no common denominator."""
         hint = "values and exports need none"
         return BudgetError(Diagnostic("SF502", "a nested matrix has no common denominator", None, hint))
 
@@ -120,19 +121,24 @@ class TransferMatrix(_PairTable[AnyTransferFunction]):
         """N(s) and d(s); SF501 where sums would have to be opened, SF502 where pairs are nested."""
         each = [tf for tf in self.each if isinstance(tf, TransferFunction)]
         if len(each) < len(self.each):
-            raise self._nested()
-        kernels = _one_table([tf.kernels for tf in each])
-        if kernels is None:
-            return self.in_base_lengths.over
-        radicals = None if kernels else each[0].radicals
-        numerators, den = over_common_denominator([(tf.num, tf.den) for tf in each], radicals)
+            raise self.nested_error()
+        kernels = one_table([tf.kernels for tf in each])
+        if kernels is None or len({tf.ring.names for tf in each if tf.kernels}) > 1:
+            each = [tf for tf in self.alike.each if isinstance(tf, TransferFunction)]
+            kernels = one_table([tf.kernels for tf in each]) or NO_KERNELS
+        if kernels:
+            ring = max((tf.ring for tf in each), key=lambda ring: len(ring.names))
+            quotients = [(tf.num.over(ring), tf.den.over(ring)) for tf in each]
+            numerators, den = over_common_denominator(quotients)
+        else:
+            numerators, den = over_common_denominator([(tf.num, tf.den) for tf in each], each[0].radicals)
         return OverDenominator(self.rows(numerators), den, kernels)
 
     @cached_property
-    def in_base_lengths(self) -> TransferMatrix:
-        """The same matrix with kernels of lengths that all entries share, where some had halves of others."""
+    def alike(self) -> TransferMatrix:
+        """The same matrix in kernels that all entries share."""
         named = [(tf.output.name, tf.input.name) for tf in self.each]
-        return TransferMatrix(self.rows(derive_in_base_lengths(self.model, named)), self.reason)
+        return TransferMatrix(self.rows(derive_alike(self.model, named)), self.reason)
 
     def bind(self, values: Mapping[str, Given] | None = None) -> BoundMatrix:
         """Return the matrix with the declared values, or the given ones, as single functions do."""
@@ -150,14 +156,12 @@ class BoundMatrix(_PairTable[AnyBoundFunction]):
         """N(s) and d(s) with these numbers, over s, pi, functions of constants, and kernels; else SF502."""
         each = tuple(bound for bound in self.each if isinstance(bound, BoundTransferFunction))
         if len(each) < len(self.each):
-            raise self._nested()
-        kernels = _one_table([bound.kernels for bound in each])
+            raise self.nested_error()
+        kernels = one_table([bound.kernels for bound in each])
         if kernels is None:
             values = {name: value for bound in each for name, value in bound.values}
-            return self.source.in_base_lengths.bind(values).over
-        names = dict.fromkeys(name for bound in each for name in bound.ratio.ring.names)
-        waves = set(kernels.generators)
-        ring = Ring((*(name for name in names if name not in waves), *kernels.generators))
+            return self.source.alike.bind(values).over
+        ring = joined_ring([bound.ratio.ring for bound in each], kernels)
         radicals = None if kernels else radicals_at(each[0].source, ring, dict(each[0].all_values))
         quotients = [(bound.num.over(ring), bound.den.over(ring)) for bound in each]
         numerators, den = over_common_denominator(quotients, radicals)
@@ -174,6 +178,23 @@ class BoundMatrix(_PairTable[AnyBoundFunction]):
         values = [pair.each(points.ravel().tolist()) for pair in self.each]
         return np.array(values, dtype=complex).reshape(*self.shape, *points.shape)
 
+    def relative_gains(self, s: npt.ArrayLike) -> npt.NDArray[np.complex128]:
+        """Return the product, entry by entry, of values and the transposed inverse (Bristol 1966).
+
+        Not a number where the matrix has a pole or is singular. Raises SF902 where it is not square.
+        """
+        import numpy as np
+
+        rows, columns = self.shape
+        if rows != columns:
+            raise refused(f"relative gains are of square matrices; this one is {rows} x {columns}")
+        values = np.moveaxis(self.at(s), (0, 1), (-2, -1))
+        found = np.full(values.shape, np.nan, dtype=complex)
+        for place in np.ndindex(values.shape[:-2]):
+            if np.isfinite(values[place]).all() and np.linalg.matrix_rank(values[place]) == rows:
+                found[place] = values[place] * np.linalg.inv(values[place]).T
+        return np.moveaxis(found, (-2, -1), (0, 1))
+
 
 def derive_matrix(
     model: Model,
@@ -188,8 +209,8 @@ def derive_matrix(
 
     Its pairs are in the representation that :func:`symflex.transfer.of_model.derive_as` picks.
     """
-    rows = picked("output", outputs, [o.name for o in model.outputs])
-    columns = picked("input", inputs, [i.name for i in model.inputs])
+    rows = picked("output", outputs, [o.name for o in model.answers])
+    columns = picked("input", inputs, [i.name for i in model.causes])
     pairs = [(output, source) for output in rows for source in columns]
     tfs, reason = derive_as(model, pairs, representation, solves=solves, is_read=is_read)
     width = len(columns)
@@ -236,7 +257,14 @@ def _cleared(value: Factored, images: LineImages, radicals: Radicals | None) -> 
     return cancel(value.numerator(), value.denominator(), images, radicals)[0]
 
 
-def _one_table(tables: Sequence[KernelTable]) -> KernelTable | None:
+def joined_ring(rings: Sequence[Ring], kernels: KernelTable) -> Ring:
+    """Return the ring of all names of several, those of kernels last."""
+    waves = set(kernels.generators)
+    names = dict.fromkeys(name for ring in rings for name in ring.names if name not in waves)
+    return Ring((*names, *kernels.generators))
+
+
+def one_table(tables: Sequence[KernelTable]) -> KernelTable | None:
     """Return one table of the laws and kernels of several; None where a name means two lengths."""
     laws: dict[tuple[str, ...], tuple[Dispersion, tuple[Kernel, ...]]] = {}
     for table in tables:

@@ -14,7 +14,7 @@ from flint import arb
 
 from symflex.balls import ball, precision
 from symflex.errors import Diagnostic, Span, Text
-from symflex.expressions import Attribute, Equation, Expression, Number, names, parse
+from symflex.expressions import Attribute, Equation, Expression, Name, Number, names, parse
 from symflex.library.blocks import ROOT
 from symflex.library.blocks import Block as BlockType
 from symflex.library.elements import COMPONENTS, THROUGH_NAME, Domain, Element, LineElement, Placing, Variable
@@ -465,6 +465,8 @@ class Model:
     signal_units: tuple[tuple[Variable, Dimension], ...] = ()
     quotients: tuple[tuple[tuple[str, str], Dimension], ...] = ()
     operating_point: OperatingPoint | None = None
+    # Outputs that are imposed, each with an input that follows from them: functions go the other way there.
+    imposed: tuple[tuple[str, str], ...] = ()
     warnings: tuple[Diagnostic, ...] = field(default=(), compare=False, repr=False)
     # What was declared in cycles and is used in radians, as it is used; of models in blocks too.
     conversions: tuple[ModelParameter, ...] = field(default=(), compare=False, repr=False)
@@ -555,7 +557,33 @@ class Model:
         """Every (output, input) pair, outputs first."""
         return tuple((o.name, i.name) for o in self.outputs for i in self.inputs)
 
+    @property
+    def answers(self) -> tuple[Output, ...]:
+        """What follows: outputs, but for those imposed, and the inputs that follow from these."""
+        imposed, given = {y for y, _ in self.imposed}, {i.name: i for i in self.inputs}
+        freed = (given[u] for _, u in self.imposed)
+        own = (Output(i.name, Name(i.name), i.dimension, i.unit, i.latex) for i in freed)
+        return (*(o for o in self.outputs if o.name not in imposed), *own)
 
+    @property
+    def causes(self) -> tuple[Input, ...]:
+        """What is given: inputs, but for those that follow, and the outputs that are imposed."""
+        freed, known = {u for _, u in self.imposed}, {o.name: o for o in self.outputs}
+        imposed = (known[y] for y, _ in self.imposed)
+        own = (
+            Input(o.name, MOTIONS.get(o.unit, "signal"), (), o.dimension, o.unit, o.latex) for o in imposed
+        )
+        return (*(i for i in self.inputs if i.name not in freed), *own)
+
+
+MOTIONS: Final = {
+    "m": "displacement",
+    "m/s": "velocity",
+    "m/s^2": "acceleration",
+    "rad": "angle",
+    "rad/s": "angular_velocity",
+    "rad/s^2": "angular_acceleration",
+}  # what is imposed with an output of a unit
 AnyDraft = TypeVar("AnyDraft", bound=Any)  # a model, or one that is not resolved yet
 
 

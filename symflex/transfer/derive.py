@@ -57,27 +57,31 @@ def derive_all(
     pairs: Sequence[tuple[str, str]],
     most: Terms | None = None,
     *,
-    in_base_lengths: bool = False,
+    alike: bool = False,
 ) -> tuple[TransferFunction, ...]:
     """Return transfer functions of one elimination; ``most`` refuses distributed systems earlier.
 
-    Kernels are of the lengths that each function is shortest in, or those all share ``in_base_lengths``.
+    Each function is in the kernels in which it is shortest; with ``alike`` all are in the same ones.
     """
-    workshop = _CramerQuotients(equations, most, in_base_lengths=in_base_lengths)
+    workshop = _CramerQuotients(equations, most, alike=alike)
     derived = tuple(workshop.finish(output, source) for output, source in pairs)
     if not (workshop.is_sure or is_tapered(equations.model)):
         from symflex.transfer.named_coefficients import named_coefficients  # only with beams
 
         # Common factors may be left; with names for coefficients others may be, once these are opened.
         named, kept = named_coefficients(equations)
-        again = assemble(named, nested_transfer)
-        other = _CramerQuotients(again, most, equations, kept, in_base_lengths=in_base_lengths)
-        derived = tuple(
-            min(tf, other.finish(*pair), key=lambda t: sum(len(f) * abs(e) for f, e in t.ratio.factors))
-            for tf, pair in zip(derived, pairs, strict=True)
-        )
+        other = _CramerQuotients(assemble(named, nested_transfer), most, equations, kept, alike=alike)
+        again = tuple(other.finish(output, source) for output, source in pairs)
+        if alike:
+            derived = min(derived, again, key=lambda tfs: sum(map(_terms, tfs)))
+        else:
+            derived = tuple(min(two, key=_terms) for two in zip(derived, again, strict=True))
     compare(workshop.solve, [agreement(tf) for tf in derived])
     return derived
+
+
+def _terms(tf: TransferFunction) -> int:
+    return sum(len(factor) * abs(exponent) for factor, exponent in tf.ratio.factors)
 
 
 class ClosedDefinitions:
@@ -118,10 +122,10 @@ class _CramerQuotients:
         origin: Equations | None = None,
         kept: Sequence[str] = (),
         *,
-        in_base_lengths: bool = False,
+        alike: bool = False,
     ) -> None:
         self._equations = equations
-        self._in_base_lengths = in_base_lengths
+        self._alike = alike
         self._most = most
         self._origin = origin or equations
         opened = None if most is None else most.opened
@@ -187,7 +191,7 @@ class _CramerQuotients:
         parameters = [*in_order_of_use(self._equations.model), *kept]
         ring = self._expansion.ring
         table = table.embedded(opened)
-        lengths = () if self._in_base_lengths else propagation.coordinates
+        lengths = () if self._alike else propagation.coordinates
         return KernelReduction(ring, table, parameters, lengths, self._radicals)
 
     def finish(self, name: str, source: str) -> TransferFunction:
@@ -195,8 +199,8 @@ class _CramerQuotients:
         row = next(row for row in self._equations.outputs if row.name == name)
         num, den = self._determinants.num(name, source), self._determinants.den
         model = self._origin.model
-        output = next(o for o in model.outputs if o.name == row.name)
-        given = next(i for i in model.inputs if i.name == source)
+        output = next(o for o in model.answers if o.name == row.name)
+        given = next(i for i in model.causes if i.name == source)
         if self._reduction is None and row.divisor.is_one and self._are_coprime(row.name, source):
             return self._made(output, given, self._primitive(row.name, source, num), None)
         # For a zero numerator the common factor is the whole denominator: every mode is hidden.

@@ -189,7 +189,7 @@ def derive_nested(
     from symflex.equations.elimination.star_mesh import eliminate  # few models are so large
 
     elimination = eliminate(equations, pairs)
-    outputs, inputs = {o.name: o for o in model.outputs}, {i.name: i for i in model.inputs}
+    outputs, inputs = {o.name: o for o in model.answers}, {i.name: i for i in model.causes}
     known = dict(model.quotients)
     made = []
     for (output, source), (num, den) in zip(pairs, elimination.quotients, strict=True):

@@ -121,9 +121,13 @@ def derive_nameless(
     return derive_from(equations_layer.assemble(model, nested_transfer, is_nameless=True), pairs, most)
 
 
-def derive_in_base_lengths(model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[TransferFunction, ...]:
-    """Return transfer functions whose kernels are of the same lengths, so that they can be added."""
-    return derive_from(assemble(model), pairs, in_base_lengths=True)
+def derive_alike(model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[TransferFunction, ...]:
+    """Return transfer functions over one ring with the same kernels, so that they can be added."""
+    derived = derive_from(assemble(model), pairs, alike=True)
+    if any(tf.is_mixed or is_degenerate(tf) for tf in derived):
+        nameless = equations_layer.assemble(model, nested_transfer, is_nameless=True)
+        derived = derive_from(nameless, pairs, alike=True)
+    return derived
 
 
 def followed_along_x(tf: TransferFunction) -> TransferFunction:

@@ -19,6 +19,7 @@ ONE_IDEA = {
     "StateSpace",
     "Sweep",
     "TransferFunction",
+    "TransferMatrix",
 }
 """What a Python user holds bears the name of what the pipeline makes, which it wraps."""
 

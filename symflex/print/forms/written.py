@@ -40,6 +40,7 @@ def written_form(tf: TransferFunction) -> PrintedForm | None:
         or tf.input.kind != "signal"
         or any(b.block is None for b in model.blocks)
         or model.has_equations
+        or model.imposed
         or model.root is not None  # forms are read back in the root, which no text of the model has
     ):
         return None

@@ -1,0 +1,335 @@
+"""Matrices of transfer functions: exact, in symbols and with numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from symflex import matrices as matrices_layer
+from symflex.api.toolboxes import refuse_attribute
+from symflex.api.transfer_function import (
+    BoundNestedTransferFunction,
+    BoundTransferFunction,
+    NestedTransferFunction,
+    Number,
+    TransferFunction,
+)
+from symflex.errors import no_such, refused
+from symflex.expressions import Name, quotient
+from symflex.print.forms import print_part
+from symflex.print.read_back import read_back
+from symflex.print.sympy import symbols_of, to_sympy
+from symflex.transfer import BoundNested
+from symflex.transfer import NestedTransferFunction as Nested
+
+if TYPE_CHECKING:
+    import numpy as np
+    import sympy
+    from numpy.typing import ArrayLike, NDArray
+
+Place = int | str
+
+
+def _position(place: Place, names: tuple[str, ...], what: str) -> int:
+    if isinstance(place, str):
+        if place not in names:
+            raise no_such(what, place, names)
+        return names.index(place)
+    if not -len(names) <= place < len(names):
+        raise IndexError(f"there are {len(names)} {what}s, from 0 to {len(names) - 1}")
+    return place % len(names)
+
+
+class _Indexed:
+    """What both kinds of matrices tell of themselves."""
+
+    if TYPE_CHECKING:
+
+        @property
+        def exact(self) -> matrices_layer.TransferMatrix | matrices_layer.BoundMatrix:
+            """The matrix of :mod:`symflex.matrices`."""
+
+        @property
+        def outputs(self) -> tuple[str, ...]:
+            """Names of the outputs, a row each."""
+
+        @property
+        def inputs(self) -> tuple[str, ...]:
+            """Names of the inputs, a column each."""
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """How many outputs and how many inputs there are."""
+        return self.exact.shape
+
+    def _pair(self, key: object) -> Any:  # noqa: ANN401 (one of four functions)
+        if not isinstance(key, tuple) or len(key) != 2:  # noqa: PLR2004 (row and column)
+            raise refused("an entry has two indices", 'write G[0, 1] or G["y", "u"]')
+        i, j = _position(key[0], self.outputs, "output"), _position(key[1], self.inputs, "input")
+        return self.exact.pairs[i][j]
+
+
+@dataclass(frozen=True)
+class TransferMatrix(_Indexed):
+    """``y = N(s)/d(s) u``: all functions of some outputs and inputs, exact, over one denominator.
+
+    Parameters
+    ----------
+    exact : symflex.matrices.TransferMatrix
+        The matrix.
+
+    Examples
+    --------
+    >>> import symflex
+    >>> model = symflex.loads('''
+    ... symflex = 1
+    ... parameters = { m_1 = {}, m_2 = {}, k = {} }
+    ... elements.motor = { type = "mass", at = "x", m = "m_1" }
+    ... elements.tip = { type = "mass", at = "y", m = "m_2" }
+    ... elements.link = { type = "spring", between = ["x", "y"], k = "k" }
+    ... inputs = { F = { force = "x" }, P = { force = "y" } }
+    ... outputs = { X = "x", Y = "y" }
+    ... ''')
+    >>> G = model.transfer_matrix()
+    >>> G.shape, G["Y", "F"].num, G.den
+    ((2, 2), k, s**2*(k*(m_1 + m_2) + m_1*m_2*s**2))
+    >>> G.num
+    Matrix([
+    [k + m_2*s**2,            k],
+    [           k, k + m_1*s**2]])
+    >>> G.inverse().to_sympy()
+    Matrix([
+    [k + m_1*s**2,           -k],
+    [          -k, k + m_2*s**2]])
+    >>> G.det()
+    1/(s**2*(k*(m_1 + m_2) + m_1*m_2*s**2))
+    """
+
+    exact: matrices_layer.TransferMatrix
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> NoReturn:
+            refuse_attribute(self, name, BoundTransferMatrix)
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of the outputs, a row each."""
+        return tuple(o.name for o in self.exact.outputs)
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of the inputs, a column each."""
+        return tuple(i.name for i in self.exact.inputs)
+
+    def __getitem__(self, key: tuple[Place, Place]) -> TransferFunction | NestedTransferFunction:
+        """Return one function, by the numbers or the names of its output and input."""
+        tf = self._pair(key)
+        return NestedTransferFunction(tf) if isinstance(tf, Nested) else TransferFunction(tf)
+
+    @cached_property
+    def _form(self) -> matrices_layer.MatrixForm:
+        return matrices_layer.print_matrix(self.exact)
+
+    @cached_property
+    def _symbols(self) -> dict[str, sympy.Symbol]:
+        return symbols_of(self.exact.model)
+
+    @property
+    def den(self) -> sympy.Expr:
+        """The common denominator d(s); 1 where nested functions have several."""
+        return to_sympy(self._form.den, self._symbols)
+
+    @property
+    def num(self) -> sympy.ImmutableMatrix:
+        """The numerators over it."""
+        import sympy
+
+        rows, columns = self.shape
+        entries = [[self._form.entry(i, j).num for j in range(columns)] for i in range(rows)]
+        return sympy.ImmutableMatrix([[to_sympy(e, self._symbols) for e in row] for row in entries])
+
+    @property
+    def where(self) -> tuple[tuple[sympy.Symbol, sympy.Expr], ...]:
+        """The names that ``num`` and ``den`` introduce or keep, with their expressions."""
+        lines = self._form.where
+        return tuple((to_sympy(Name(n), self._symbols), to_sympy(e, self._symbols)) for n, e in lines)
+
+    def to_sympy(self) -> sympy.ImmutableMatrix:
+        """Return the matrix in SymPy, each entry its numerator over the common denominator."""
+        return matrices_layer.matrix_sympy(self.exact, self._form)
+
+    def latex(self, form: str | None = None, *, width: float | str | None = None) -> str:
+        """Return the matrix in LaTeX: on one line, or as a display for a column of a width in mm."""
+        from symflex.print.latex import width_of
+
+        made = self._form if form is None else matrices_layer.print_matrix(self.exact, form)
+        if width is None:
+            return matrices_layer.matrix_latex(self.exact, made)
+        return matrices_layer.matrix_display(self.exact, made, width_of(width))
+
+    def to_latex(self) -> str:
+        """Return the matrix in LaTeX on one line, as :meth:`latex`."""
+        return self.latex()
+
+    def to_json_dict(self, form: str | None = None) -> dict[str, object]:
+        """Return what ``symflex derive --matrix --json`` prints."""
+        made = self._form if form is None else matrices_layer.print_matrix(self.exact, form)
+        return matrices_layer.matrix_json(self.exact, made)
+
+    def __str__(self) -> str:
+        return matrices_layer.matrix_text(self.exact, self._form)
+
+    def __repr__(self) -> str:
+        rows, columns = self.shape
+        return f"<TransferMatrix {rows} x {columns}: {', '.join(self.outputs)} / {', '.join(self.inputs)}>"
+
+    def _repr_latex_(self) -> str:
+        return f"$\\displaystyle {self.latex()}$"
+
+    def det(self) -> sympy.Expr:
+        """Return the determinant of a square matrix, exact and in lowest terms; 0 where it is singular.
+
+        Raises
+        ------
+        UsageError
+            SF902 when the matrix is not square.
+        """
+        tf = matrices_layer.determinant(self.exact)
+        form = print_part(tf)
+        read_back(tf, form)
+        whole = to_sympy(quotient(form.num, form.den), self._symbols)
+        lines = {to_sympy(Name(n), self._symbols): to_sympy(e, self._symbols) for n, e in form.where}
+        for name in reversed(lines):
+            whole = whole.subs(name, lines[name])
+        return whole
+
+    @property
+    def normal_rank(self) -> int:
+        """The rank at almost every s, proved: so many outputs can be imposed by as many inputs."""
+        return matrices_layer.impose_all(self.exact).rank
+
+    def inverse(self) -> TransferMatrix:
+        """Return the inputs that follow from imposed outputs, exact and in lowest terms.
+
+        Raises
+        ------
+        UsageError
+            SF902 when the matrix is not square.
+        ModelError
+            SF237 when it is singular at every s, with its normal rank.
+        """
+        return TransferMatrix(matrices_layer.inverse(self.exact))
+
+    def interaction(self) -> matrices_layer.Interaction:
+        """Return static gains, static decoupling and relative gains at s = 0; its text says them in letters.
+
+        Raises
+        ------
+        ModelError
+            SF237 as :meth:`inverse`; SF910 for beams, rods and roots of s.
+        """
+        return matrices_layer.interaction(self.exact)
+
+    def bind(self, **values: Number) -> BoundTransferMatrix:
+        """Return the matrix with the declared values, or the given ones, as a function does."""
+        return BoundTransferMatrix(self.exact.bind(values))
+
+    def at(self, s: ArrayLike) -> NDArray[np.complex128]:
+        """Return values with the declared parameters; see :meth:`BoundTransferMatrix.at`."""
+        return self.bind().at(s)
+
+
+@dataclass(frozen=True)
+class BoundTransferMatrix(_Indexed):
+    """A transfer matrix with numbers.
+
+    Parameters
+    ----------
+    exact : symflex.matrices.BoundMatrix
+        The matrix.
+    """
+
+    exact: matrices_layer.BoundMatrix
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> NoReturn:
+            refuse_attribute(self, name)
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of the outputs, a row each."""
+        return tuple(o.name for o in self.exact.source.outputs)
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of the inputs, a column each."""
+        return tuple(i.name for i in self.exact.source.inputs)
+
+    def __getitem__(self, key: tuple[Place, Place]) -> BoundTransferFunction | BoundNestedTransferFunction:
+        """Return one function, by the numbers or the names of its output and input."""
+        bound = self._pair(key)
+        if isinstance(bound, BoundNested):
+            return BoundNestedTransferFunction(bound.source, bound.values)
+        return BoundTransferFunction(bound)
+
+    def __repr__(self) -> str:
+        rows, columns = self.shape
+        names = f"{', '.join(self.outputs)} / {', '.join(self.inputs)}"
+        return f"<BoundTransferMatrix {rows} x {columns}: {names}>"
+
+    def at(self, s: ArrayLike) -> NDArray[np.complex128]:
+        """Return values to double precision, an array of the matrix's shape followed by that of s [rad/s]."""
+        return self.exact.at(s)
+
+    def __call__(self, s: ArrayLike) -> NDArray[np.complex128]:
+        """Return :meth:`at`."""
+        return self.at(s)
+
+    def rga(self, s: ArrayLike) -> NDArray[np.complex128]:
+        """Return the relative gain array at complex frequencies [rad/s], of the shape of :meth:`at`.
+
+        Not a number where the matrix is singular, or has a pole.
+
+        Examples
+        --------
+        >>> import symflex
+        >>> model = symflex.loads('''
+        ... symflex = 1
+        ... inputs = { u = {}, v = {} }
+        ... outputs = { y = "(u + v)/(s + 1)", z = "(u - v)/(s + 2)" }
+        ... ''')
+        >>> model.transfer_matrix().bind().rga(0).real
+        array([[0.5, 0.5],
+               [0.5, 0.5]])
+        """
+        return self.exact.relative_gains(s)
+
+    def dcgain(self) -> NDArray[np.float64]:
+        """Return the limits for s -> 0 from the right, each proved to the last digit."""
+        import numpy as np
+
+        rows, columns = self.shape
+        gains = [[self[i, j].dcgain() for j in range(columns)] for i in range(rows)]
+        return np.array(gains, dtype=float)
+
+    def to_control(self) -> object:
+        """Return a ``control.TransferFunction`` with all inputs and outputs, named.
+
+        Coefficients are the doubles nearest to the exact ones; :meth:`Model.state_space` loses fewer digits.
+
+        Raises
+        ------
+        ModelError
+            SF235 for beams, rods and delays; SF233 when a coefficient does not fit in double precision.
+        UsageError
+            SF902 when python-control is not installed.
+        """
+        rows, columns = self.shape
+        single: list[list[Any]] = [[self[i, j].to_control() for j in range(columns)] for i in range(rows)]
+        kind = type(single[0][0])
+        num = [[system.num[0][0] for system in row] for row in single]
+        den = [[system.den[0][0] for system in row] for row in single]
+        return kind(num, den, inputs=list(self.inputs), outputs=list(self.outputs))

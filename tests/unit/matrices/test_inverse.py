@@ -1,0 +1,79 @@
+"""Imposed outputs: inverses, determinants and normal ranks, compared with those by hand and by numpy."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from symflex.errors import ModelError, UsageError
+from symflex.matrices.inverse import determinant, impose_all, inverse
+from symflex.matrices.transfer_matrix import derive_matrix
+from symflex.transfer import bind
+from tests.unit.matrices.models import TWO_MASSES, model_of
+
+CROSSED = """
+symflex = 1
+[inputs]
+u = {}
+v = {}
+w = {}
+[outputs]
+x = "v/s"
+y = "u/(s + 1) + w"
+z = "w/(s + 2)"
+"""
+
+TWICE = """
+symflex = 1
+[inputs]
+u = {}
+v = {}
+[outputs]
+x = "(u + v)/(s + 1)"
+y = "2*(u + v)/(s + 1)"
+"""
+
+
+def test_the_inverse_of_receptances_is_the_dynamic_stiffness() -> None:
+    turned = inverse(derive_matrix(model_of(TWO_MASSES)))
+    assert [[tf.name for tf in row] for row in turned.pairs] == [
+        ["F_1/X_1", "F_1/X_2"],
+        ["F_2/X_1", "F_2/X_2"],
+    ]
+    assert {tf.quantity for tf in turned.each} == {"dynamic stiffness"}
+    ring = turned.over.den.ring
+    s, m_1, m_2, k_1, k_2 = (ring.generator(name) for name in ("s", "m_1", "m_2", "k_1", "k_2"))
+    assert turned.over.den.is_one
+    rows = [[n.expand() for n in row] for row in turned.over.numerators]
+    assert rows == [[m_1 * s**2 + k_1 + k_2, -k_2], [-k_2, m_2 * s**2 + k_2]]
+
+
+def test_an_inverse_with_numbers_is_that_of_values() -> None:
+    matrix = derive_matrix(model_of(CROSSED))
+    s = np.array([0.3 + 1j, 2j])
+    values = np.moveaxis(matrix.bind().at(s), -1, 0)
+    turned = np.moveaxis(inverse(matrix).bind().at(s), -1, 0)
+    assert np.allclose(values @ turned, np.eye(3), atol=1e-14)
+
+
+def test_a_determinant_has_the_sign_of_the_order_of_its_pairs() -> None:
+    # x = v/s, y = u/(s + 1) + w, z = w/(s + 2): one exchange, so -1/(s (s + 1) (s + 2)).
+    tf = determinant(derive_matrix(model_of(CROSSED)))
+    s = 0.7 + 0.2j
+    assert bind(tf)(s) == pytest.approx(-1 / (s * (s + 1) * (s + 2)), rel=1e-15)
+
+
+def test_a_singular_matrix_is_refused_with_its_normal_rank() -> None:
+    matrix = derive_matrix(model_of(TWICE))
+    assert impose_all(matrix).rank == 1
+    assert determinant(matrix).is_zero
+    with pytest.raises(ModelError, match="its normal rank is 1, not 2") as caught:
+        inverse(matrix)
+    assert caught.value.diagnostics[0].code == "SF237"
+
+
+def test_a_wide_matrix_has_a_normal_rank_and_no_inverse() -> None:
+    matrix = derive_matrix(model_of(CROSSED), ["x", "z"])
+    assert impose_all(matrix).rank == 2
+    with pytest.raises(UsageError, match="2 outputs and 3 inputs has no inverse"):
+        inverse(matrix)
