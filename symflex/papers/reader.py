@@ -239,10 +239,12 @@ class LatexReader(SymbolReader):
         return value
 
     def is_unit(self, *, any_name: bool) -> bool:
-        """Tell whether upright letters are the symbol of a unit, or only of seconds, and no function."""
+        """Tell whether upright letters are a unit: any behind a number or at the end, else only seconds."""
         end = group_end(self.tokens, self.at + 1)
         word = text_of(t for t in self.tokens[self.at + 1 : end] if t.text not in "{}")
-        is_one = word == LAPLACE or (any_name and unit_named(word) is not None)
+        is_last = self.tokens[self.at].is_spaced and end == len(self.tokens)
+        is_last &= PrintedSymbol(word) not in self.notation.names
+        is_one = word == LAPLACE or ((any_name or is_last) and is_unit_name(word))
         return word not in IMAGINARY and is_one and not self.upright_base()
 
     def signed_operand(self) -> Value:
@@ -575,7 +577,7 @@ class LatexReader(SymbolReader):
         text = self.text
         if ACCENTED.get(text) in DOTS:
             return False
-        if text in FONTS and self.function_name()[0] is not None:
+        if text in FONTS and (self.function_name()[0] is not None or self.is_unit(any_name=False)):
             return False
         if text == "e" and self.ahead() == "^":
             return False
@@ -659,7 +661,16 @@ class LatexReader(SymbolReader):
             return value
         result = self.powers(value, start)
         assert isinstance(result, Expression)
+        if isinstance(result, Power) and self.argument_typed() in ARGUMENTS:  # B^2(s) is B(s)^2
+            self.applied(value)
         return result
+
+    def argument_typed(self) -> str:
+        """Return what stands in the brackets that follow, empty without them."""
+        end = self.end_of_bracket(self.at) if self.text in ("(", "[") else -1
+        return (
+            text_of(t for t in self.tokens[self.at + 1 : end - 1] if t.text not in FONTS) if end > 0 else ""
+        )
 
     def upright_base(self) -> int:
         r"""Return of how many tokens the base of ``{\rm e}^{-sT}`` is made, 0 if it is no e."""
@@ -723,11 +734,8 @@ class LatexReader(SymbolReader):
 
     def ratio_applied(self, value: Expression) -> None:
         r"""Skip the argument of a quotient or bracket of functions, as in ``\frac{X}{F}(s)``."""
-        end = self.end_of_bracket(self.at) if self.text == "(" else -1
-        typed = (
-            text_of(t for t in self.tokens[self.at + 1 : end - 1] if t.text not in FONTS) if end > 0 else ""
-        )
-        if typed not in ARGUMENTS or not names(value):
+        end = self.end_of_bracket(self.at)
+        if self.argument_typed() not in ARGUMENTS or not names(value):
             return
         constants = set(self.notation.names.values()) - self.notation.signals
         is_sure = not any(
@@ -892,6 +900,11 @@ class LatexReader(SymbolReader):
             self.applied(value)
             return derived
         return self.placed(derived)
+
+
+def is_unit_name(word: str) -> bool:
+    """Tell whether a word is a unit, of a logarithm too."""
+    return word in ("dB", "Np", "rpm") or unit_named(word) is not None
 
 
 def _differentiation(order: int, span: Span | None) -> Expression:

@@ -48,7 +48,7 @@ SKIPPED: Final = commands(
     "null centering hfill hfil noindent hline mathord mathbin mathrel mathopen mathclose mathinner protect "
     "nobreak par boxed ensuremath mathclap fbox smash small large therefore because "
     "IEEEyesnumber IEEEnonumber IEEEeqnarraynumspace"
-) | {"\\/", "\\-"}
+) | {"\\/", "\\-", r"\(", r"\)", r"\[", r"\]", "$"}
 SPACES: Final = commands(", ; : ! > thinspace medspace enspace space negthinspace") | {"\\ ", "~"}
 WIDE: Final = commands("quad qquad")
 WITHOUT_ARGUMENT: Final = commands(  # what is left out with its argument

@@ -37,6 +37,7 @@ READ = (
     (r"\dfrac{\frac{1}{sC}}{R + \frac{1}{sC}}", "", "1/(s*C)/(R+1/(s*C))"),
     (r"\frac{V_\mathrm{out}(s)}{V_\mathrm{in}(s)} = \frac{\left(\frac{R}{L}\right)s}{s^2 + \frac RLs}", "",
      "R/L*s/(s^2+R/L*s)"),
+    (r"\[ \frac{C(s)}{A(s)C(s)-B^2(s)} \]", "", "C/(A*C-B^2)"),
     (r"\frac{\log x_1}{\log x_2} + \log_{10}(a) + \log_e b", "", "log(x_1)/log(x_2)+log(a)/log(10)+log(b)"),
     (r"\frac{(I + ml^2) s^2 - mgl}{mls^2} \tag{16}", "m l g I", "((I+m*l^2)*s^2-m*g*l)/(m*l*s^2)"),
     (r"-\frac{P\beta}{2k} \cdot \frac{2 + \cos\beta L + \cosh\beta L}{\sin\beta L + \sinh\beta L}", "",

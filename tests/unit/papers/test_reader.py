@@ -21,6 +21,8 @@ UNREAD = (
     (r"\omega^2 + j", 12, "does not vanish"),
     (r"\input{secrets}", 1, "not read here"),
     (r"R\text{ s}", 2, "may be a unit"),
+    (r"20\log_{10} a\;\text{dB}", 16, "may be a unit"),
+    (r"\frac{a}{b}\ \mathrm{Hz}", 14, "may be a unit"),
     ("5e-3", 2, "may be a power of ten"),
 )
 
