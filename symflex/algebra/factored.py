@@ -5,6 +5,7 @@ Their values at a random point of a prime field tell whether they vanish, almost
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -342,7 +343,9 @@ def _merge(
     return tuple((f, e) for f, e in merged if e)
 
 
-PRIME = 2**61 - 1  # Mersenne's; a polynomial of degree d vanishes at a random point with odds d/PRIME
+# A prime of Mersenne's below what a word of the machine has room for: those of WebAssembly have 32 bits.
+# A polynomial of degree d vanishes at a random point with odds d/PRIME.
+PRIME = 2**61 - 1 if sys.maxsize > 2**32 else 2**31 - 1
 
 
 def random_point(names: Sequence[str]) -> dict[str, int]:

@@ -21,7 +21,7 @@ from flint import fmpz, fmpz_mpoly, nmod_poly
 from flint.utils.flint_exceptions import DomainError
 
 from symflex.algebra.dispersion import Dispersion, KernelTable
-from symflex.algebra.factored import Factored
+from symflex.algebra.factored import PRIME, Factored
 from symflex.algebra.ring import Ring, by_powers, degree_in, terms_of
 
 TERMS = (8, 16, 32)  # lengths of Taylor series that are tried
@@ -90,7 +90,7 @@ class Vanishing:
 
 def primes() -> Iterator[int]:
     """Yield the sizes of fields that are tried, the same ones every time."""
-    prime = 2**61 + 1 - STEP
+    prime = PRIME + 2 - STEP
     for _ in range(FIELDS):
         prime = _next_prime(prime)
         yield prime
