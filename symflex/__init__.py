@@ -108,3 +108,10 @@ def __getattr__(name: str) -> object:
     if name == "derivation_cache":
         message += ": symflex no longer caches derivations on disk; leave it out"
     raise AttributeError(message)
+
+
+def load_ipython_extension(shell: object) -> None:
+    """Make the cell magic ``%%symflex`` known to a notebook, by ``%load_ext symflex``."""
+    from symflex.api.magic import register
+
+    register(shell)

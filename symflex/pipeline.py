@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from symflex.data.fitting.machine import Derived, Machine, MachineFunction
     from symflex.data.fitting.parameter_fit import ParameterFit
     from symflex.data.measurement import MeasuredResponse
+    from symflex.equations import Equations
     from symflex.model import ModelParameter
     from symflex.options import FitOptions
     from symflex.roots import Budget, PoleZeroMap, Region
@@ -77,6 +78,14 @@ def loads(
 ) -> Model:
     """Resolve a specification given as text; its ``model`` blocks read files as if it stood at ``name``."""
     return load_with(Source(name, text), settings or {}, allow_outside=allow_outside)
+
+
+def checked(model: Model) -> Equations:
+    """Return the equations of a model, which ``symflex check`` finds solvable and analytic along x."""
+    equations = assemble_for_checks(model)
+    check_solvable(equations)
+    check_along(model)
+    return equations
 
 
 def roots(bound: AnyBoundFunction, region: Region | None = None, digits: int = 15) -> PoleZeroMap:

@@ -44,9 +44,10 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "elements": ("library", "List the element and block library."),
     "units": ("library", "List the units and prefixes that quantities may have."),
     "schema": ("library", "Write the JSON Schema of specifications, for editors."),
+    "lsp": ("library", "Serve problems, fixes, completion and formulas to an editor."),
 }  # the module of each, in which its function has its name, and what it does
 GROUPS = {  # how the help lists them
-    "Begin": "new examples elements units schema",
+    "Begin": "new examples elements units schema lsp",
     "Model": "check derive draw",
     "Analyse": "roots rational respond shape sweep stability contact peak colocation",
     "Draw and export": "plot live export report",

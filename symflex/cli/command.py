@@ -74,6 +74,13 @@ class Specification:
         return model
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class _Watching:
+    """Whether a command runs once."""
+
+    watch: bool = option(False, "--watch", help="Run again whenever the file is saved.")
+
+
 COMMON: Final = frozenset("--json --set --allow-outside --budget --memory --help".split())  # to many commands
 
 
@@ -91,9 +98,9 @@ class Command(click.Command):
 
 
 def command_of(
-    name: str, options: type[T], cls: type[click.Command] = Command
+    name: str, options: type[T], cls: type[click.Command] = Command, *, watches: bool = False
 ) -> Callable[[Callable[[Specification, T], int | None]], click.Command]:
-    """Make a command of a function of a specification and options."""
+    """Make a command of a function of a specification and options; one that ``watches`` has ``--watch``."""
 
     def made(run: Callable[[Specification, T], int | None]) -> click.Command:
         def called(
@@ -102,10 +109,21 @@ def command_of(
             from symflex.model import read_settings  # a command's help needs none of it
 
             keep(spec, given.get("output"))
-            return run(Specification(spec, allow_outside, read_settings(settings)), options(**given)) or 0
+            is_watched = given.pop("watch", False)
+
+            def once() -> int:
+                return run(Specification(spec, allow_outside, read_settings(settings)), options(**given)) or 0
+
+            if not is_watched:
+                return once()
+            from symflex.cli.watching import watched  # few ask for it
+
+            return watched(spec, reporting(once))
 
         called.__doc__ = run.__doc__
         faced = budgeted(with_parameters(_Setting, reporting(called)))
+        if watches:
+            faced = with_parameters(_Watching, faced)
         asked = click.argument("spec", type=click.Path())(with_parameters(options, faced))
         return click.command(name, cls=cls)(asked)
 

@@ -33,7 +33,7 @@ TARGETS_MEANT = {  # export targets by other names
 }
 
 
-@command_of("check", CheckOptions)
+@command_of("check", CheckOptions, watches=True)
 def check(spec: Specification, given: CheckOptions) -> int:
     """Check SPEC and report every problem at once.
 
@@ -51,9 +51,7 @@ def check(spec: Specification, given: CheckOptions) -> int:
     model = None
     try:
         model = pipeline.load(spec.path, spec.allow_outside, spec.settings)
-        equations = pipeline.assemble_for_checks(model)
-        pipeline.check_solvable(equations)
-        pipeline.check_along(model)
+        equations = pipeline.checked(model)
     except SymflexError as error:
         if not given.as_json:
             if model is not None:
@@ -148,7 +146,7 @@ def chosen_representation(representation: str, form: str | None) -> str:
     return wanted
 
 
-@command_of("derive", DeriveOptions)
+@command_of("derive", DeriveOptions, watches=True)
 def derive(spec: Specification, given: DeriveOptions) -> int:
     """Print the transfer functions of SPEC in closed form.
 

@@ -376,3 +376,22 @@ def schema(*, output: str | None) -> int:
     else:
         write(output, text)
     return 0
+
+
+@click.command("lsp")
+@reporting
+def lsp() -> int:
+    """Serve problems, fixes, completion and formulas to an editor.
+
+    An editor starts this command and speaks the Language Server Protocol with it. The page "Editors" of the
+    documentation has the settings of VS Code, Neovim, Helix and Zed. It needs pip install 'symflex[editor]'.
+    """
+    from importlib.metadata import version
+
+    from symflex.errors.optional import installed
+
+    installed("pygls.lsp.server")
+    from symflex.editor.server import language_server
+
+    language_server(version("symflex")).start_io()
+    return 0

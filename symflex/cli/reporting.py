@@ -154,6 +154,8 @@ def diagnostic_json(diagnostic: Diagnostic) -> dict[str, object]:
         "file": span.origin.source.name if span else None,
         "line": span.line if span else None,
         "column": span.column if span else None,
+        "end_line": span.end_line if span else None,
+        "end_column": span.end_column if span else None,
         "hint": diagnostic.hint,
     }
 

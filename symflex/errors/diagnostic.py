@@ -49,6 +49,18 @@ class Span:
         return origin.start - origin.source.text.rfind("\n", 0, origin.start)
 
     @property
+    def end_line(self) -> int:
+        """Line number of the end of its origin, counted from 1."""
+        origin = self.origin
+        return origin.source.text.count("\n", 0, origin.end) + 1
+
+    @property
+    def end_column(self) -> int:
+        """Column behind the last character of its origin, counted from 1."""
+        origin = self.origin
+        return origin.end - origin.source.text.rfind("\n", 0, origin.end)
+
+    @property
     def text(self) -> str:
         """The characters the span covers."""
         return self.source.text[self.start : self.end]

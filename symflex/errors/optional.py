@@ -12,6 +12,7 @@ _LACKING: Final = "needs the library {}, which is not installed"
 OPTIONAL: Final = {  # error code, message and how to install, by package
     "control": ("SF902", "{} is not installed", "pip install 'symflex[control]'"),
     "anywidget": ("SF902", "{} is not installed", "pip install 'symflex[notebook]'"),
+    "pygls": ("SF902", "{} is not installed", "pip install 'symflex[editor]'"),
     "scipy": ("SF902", "{} is not installed", "pip install scipy"),
     "sympy": ("SF902", "{} is not installed", "pip install sympy"),
     "pyuff": ("SF902", "reading and writing universal files needs {}", "pip install pyuff"),

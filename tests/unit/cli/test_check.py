@@ -85,12 +85,9 @@ def test_json_of_a_wrong_specification_lists_the_problems_on_stdout(shell):
     done = shell("check", "wrong.toml", "--json")
     assert (done.code, done.err, done.json["ok"]) == (3, "", False)
     problem = next(p for p in done.json["problems"] if p["code"] == "SF210")
-    assert {k: problem[k] for k in ("file", "line", "column")} == {
-        "file": "wrong.toml",
-        "line": 6,
-        "column": 29,
-    }
-    assert set(problem) == {"code", "message", "file", "line", "column", "hint"}
+    place = {"file": "wrong.toml", "line": 6, "column": 29, "end_line": 6, "end_column": 30}
+    assert {k: problem[k] for k in place} == place
+    assert set(problem) == {"code", "message", *place, "hint"}
 
 
 def test_json_of_a_file_that_does_not_exist_names_no_place(shell):
