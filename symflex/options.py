@@ -257,6 +257,9 @@ class RootsOptions:
         help="How roots move with this parameter, or with every parameter if none is named; may be repeated.",
     )
     spread: Stated | None = option(None, "--spread", **SPREAD)
+    is_matrix: bool = option(False, "--matrix", help="Poles and zeros of all pairs as one matrix.")
+    inputs: str = option("", "--in", **ENDS, help="--matrix: inputs, such as u1,u2.  [default: all]")
+    outputs: str = option("", "--out", **ENDS, help="--matrix: outputs, such as y1,y2.  [default: all]")
     strict: bool = option(False, "--strict", help="Also exit with code 4 if part of the region is left out.")
     as_json: bool = option(False, "--json", **JSON)
 

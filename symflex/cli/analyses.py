@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from symflex.budget import entered_budget
-from symflex.cli.command import Command, Specification, command_of, first_pair
+from symflex.cli.command import Command, Specification, command_of, first_pair, names_in
 from symflex.cli.reporting import answer, emit_json, note, say, show_error, terminal_width
 from symflex.errors import BudgetError, refused
 from symflex.options import (
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from symflex.loops.clouds import RootCloud
     from symflex.loops.spread import SpreadStability
     from symflex.loops.stability_map import StabilityMap
+    from symflex.roots import Region
 
 
 _NAME = re.compile(r"(?!inf|nan)[A-Za-z_]\w*")
@@ -47,6 +48,9 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     per relative change of a parameter. Put it after SPEC: it takes the next word as the name of a parameter.
     --spread adds rectangles that contain the poles and zeros for all combinations of values within a share.
 
+    --matrix takes all outputs and inputs together: poles as of McMillan, transmission zeros, decoupling and
+    invariant zeros, the normal rank, and the directions of the zeros.
+
     Exit code 4: some roots could not be separated, or their number could not be proved. Exit code 5: the
     budget was exceeded; the roots certified so far are shown.
     """
@@ -56,9 +60,10 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     from symflex.print.roots import SHORT_DIGITS, roots_text
     from symflex.roots.region import region_of
 
-    if given.format != "text" and not given.letters:
-        raise refused("--format is for --letters")
+    _check_roots(given)
     chosen = region_of(given, "--")
+    if given.is_matrix:
+        return _matrix_roots(spec, given, chosen)
     # However short the time is, what is sought is told, and how many roots there are.
     with entered_budget().at_least(DERIVING).entered():
         model = spec.load()
@@ -111,6 +116,39 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     is_decided = all(m.status != "undecided" for m in moved) and all(c.count is not None for c in clouds)
     is_certified = located.certificate.certified and not (given.strict and located.excluded)
     return 5 if is_over else 0 if is_decided and is_certified else 4
+
+
+def _check_roots(given: RootsOptions) -> None:
+    """Refuse options of ``roots`` that do not go together."""
+    if given.format != "text" and not given.letters:
+        raise refused("--format is for --letters")
+    if (given.inputs or given.outputs) and not given.is_matrix:
+        raise refused("--in and --out are for --matrix")
+    of_pairs = given.tf or given.explain or given.letters or given.sensitivity or given.spread is not None
+    if given.is_matrix and of_pairs:
+        raise refused("--tf, --explain, --letters, --sensitivity and --spread are for single pairs")
+
+
+def _matrix_roots(spec: Specification, given: RootsOptions, chosen: Region | None) -> int:
+    """Print poles and zeros of the matrix of several inputs and outputs."""
+    from symflex.cli.progress import ProgressBar
+    from symflex.matrices.matrix_roots import matrix_roots_text
+    from symflex.matrices.zeros import locate_matrix
+    from symflex.print.roots import SHORT_DIGITS
+
+    model = spec.load()
+    outputs, inputs = names_in(given.outputs), names_in(given.inputs)
+    asked = given.digits or model.analysis.digits
+    with ProgressBar() as bar, entered_budget().reporting_to(bar).entered():
+        found = locate_matrix(model, outputs, inputs, chosen, asked or 15)
+    answer(
+        given.as_json,
+        found.to_json_dict,
+        lambda: matrix_roots_text(found, asked or SHORT_DIGITS, terminal_width()),
+    )
+    certificate = found.located.certificate
+    is_certified = certificate.certified and not (given.strict and found.located.excluded)
+    return 5 if certificate.is_exceeded else 0 if is_certified else 4
 
 
 @command_of("rational", RationalOptions)

@@ -180,6 +180,11 @@ def _completed(context: click.Context, parameter: click.Parameter, incomplete: s
     return completed(context, parameter, incomplete)
 
 
+def names_in(text: str) -> list[str]:
+    """Return the names in a text with commas."""
+    return [name for part in text.split(",") if (name := part.strip())]
+
+
 def first_pair(model: Model, tf: str | None, doing: str) -> tuple[str, str]:
     """Return the transfer function that is named, or the first one, and then say which others there are."""
     from symflex import pipeline

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from symflex.cli.command import Command, Specification, command_of
+from symflex.cli.command import Command, Specification, command_of, names_in
 from symflex.cli.reporting import diagnostic_json, emit_json, listed, note, say, show, terminal_width, write
 from symflex.errors import SymflexError, refused
 from symflex.errors.diagnostic import counted, nearest, printable
@@ -242,10 +242,7 @@ def names_of_ends(given: DeriveOptions) -> tuple[list[str], list[str]]:
     """Return the outputs and inputs named."""
     if given.tfs:
         raise refused("--tf names single functions", "choose rows and columns with --out and --in")
-    outputs, inputs = (
-        [n for name in text.split(",") if (n := name.strip())] for text in (given.outputs, given.inputs)
-    )
-    return outputs, inputs
+    return names_in(given.outputs), names_in(given.inputs)
 
 
 def _matrix(spec: Specification, given: DeriveOptions) -> int:

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import prod
 
 from symflex.algebra import Factored
 from symflex.equations.equations import Equations, OutputRow
@@ -32,6 +33,10 @@ def impose(equations: Equations, imposed: Sequence[tuple[str, str]]) -> Equation
         EquationRow(Variable("value", y), rows[y].form + LinearForm.of((v, -rows[y].divisor)), "constraint")
         for y, v in outputs.items()
     )
+    # What an output is multiplied by, but for its own filters, is no dynamics of what imposes it.
+    cleared = equations.cleared
+    if cleared is not None:
+        cleared = prod((rows[y].divisor / rows[y].poles for y in outputs), start=cleared)
     answers = (OutputRow(u, LinearForm.of((v, one)), one, one) for u, v in freed.items())
     return replace(
         equations,
@@ -39,4 +44,5 @@ def impose(equations: Equations, imposed: Sequence[tuple[str, str]]) -> Equation
         inputs=(*(v for v in equations.inputs if v.owner not in freed), *outputs.values()),
         rows=(*equations.rows, *laws),
         outputs=(*(row for row in equations.outputs if row.name not in outputs), *answers),
+        cleared=cleared,
     )

@@ -108,10 +108,10 @@ def energy_proof(
 
     ``values`` are put in place of those the parameters have; those named ``free``, such as a gain, may have
     any positive value. An ``output`` may have poles of its own, as ``x/(T*s + 1)`` has. Nothing is known with
-    loss factors, parameters that depend on s, elements that are not of this program, fields beside signals or
-    elements but those of circuits, or a value of the wrong sign.
+    loss factors, imposed outputs, parameters that depend on s, elements that are not of this program, fields
+    beside signals or elements but those of circuits, or a value of the wrong sign.
     """
-    if model.imaginary:
+    if model.imaginary or model.imposed:  # what imposes an output supplies what that takes
         return EnergyProof()
     known = {p.name: p.value for p in model.parameters if p.value is not None} | dict(values)
     known = {name: value for name, value in known.items() if name not in free}

@@ -425,10 +425,10 @@ class PoleZeroMap:
             "region": self.region.to_json_dict(),
             "certified": certificate.certified,
             "stability": self.verdict.to_json_dict(),
-            "poles": [_root_to_json(root, self.digits) for root in self.poles],
-            "zeros": [_root_to_json(root, self.digits) for root in self.zeros],
-            "right_half_plane": [_root_to_json(root, self.digits) for root in self.unstable],
-            "hidden": [{**_root_to_json(h.root, self.digits), "cause": h.cause} for h in self.hidden],
+            "poles": [root_json(root, self.digits) for root in self.poles],
+            "zeros": [root_json(root, self.digits) for root in self.zeros],
+            "right_half_plane": [root_json(root, self.digits) for root in self.unstable],
+            "hidden": [{**root_json(h.root, self.digits), "cause": h.cause} for h in self.hidden],
             "hides_more": self.hides_more,
             "excluded": [exclusion.to_json_dict() for exclusion in self.excluded],
             "certificate": {
@@ -613,7 +613,8 @@ def _locate(
     return _inside(roots, positions), roots, exceeded
 
 
-def _root_to_json(root: Root, digits: int) -> dict[str, object]:
+def root_json(root: Root, digits: int) -> dict[str, object]:
+    """Return a root as JSON data, in so many digits."""
     decimals = root.decimal(digits)
     factor = root.loss_factor()
     return {

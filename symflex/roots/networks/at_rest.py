@@ -16,6 +16,7 @@ from symflex.algebra import LAPLACE, PRIME, random_point
 from symflex.algebra.propagators import EXPONENTIAL
 from symflex.algebra.vanishing import TaylorField
 from symflex.balls import columns_of
+from symflex.equations import ConstantFunction
 from symflex.expressions import Expression
 from symflex.transfer.enclose import rational_value
 
@@ -29,18 +30,14 @@ FEWEST = 4  # columns with fewest entries that are looked at for a pivot
 
 def _place_constants(cramer: CramerEquations, point: dict[str, int]) -> bool:
     """Put functions of constants where what relates them holds; False where that cannot be done."""
-    tangents: dict[Expression, int] = {}
     values = dict(cramer.values)
     for name, value in values.items():
         if name in point and not value.is_imaginary:
             point[name] = value.rational.numerator * pow(value.rational.denominator, -1, PRIME) % PRIME
             point[name] = point[name] * pow(point["pi"], value.pi_power, PRIME) % PRIME
+    place_on_circles(cramer.equations.constants, point, PRIME)
     for constant in cramer.equations.constants:
         function, argument = constant.expression.name, constant.expression.argument
-        if function in ("cos", "sin"):
-            t = tangents.setdefault(argument, point[constant.generator])  # of half the angle, at random
-            above = 1 - t * t if function == "cos" else 2 * t
-            point[constant.generator] = above * pow(1 + t * t, -1, PRIME) % PRIME
         square = rational_value(argument, values) if function == "sqrt" else None
         if square is not None:
             residue = square.numerator * pow(square.denominator, -1, PRIME) % PRIME
@@ -48,6 +45,17 @@ def _place_constants(cramer: CramerEquations, point: dict[str, int]) -> bool:
             if root * root % PRIME != residue:
                 return False
     return True
+
+
+def place_on_circles(constants: Sequence[ConstantFunction], point: dict[str, int], prime: int) -> None:
+    """Put cosine and sine of an angle, numbers modulo a prime, at a random point of the circle."""
+    tangents: dict[Expression, int] = {}
+    for constant in constants:
+        function, argument = constant.expression.name, constant.expression.argument
+        if function in ("cos", "sin"):
+            t = tangents.setdefault(argument, point[constant.generator])  # of half the angle, at random
+            above = 1 - t * t if function == "cos" else 2 * t
+            point[constant.generator] = above * pow(1 + t * t, -1, prime) % prime
 
 
 def order_at_zero(cramer: CramerEquations, size: int, least: int) -> int | None:

@@ -63,22 +63,9 @@ class CramerEquations:
             if known.values == values:
                 return known
             return CramerEquations(equations, known.entries, known.divisor, values)
-        given = next(v for v in equations.inputs if v.owner == source)
-        places = {v: i for i, v in enumerate((*equations.unknowns, given))}
-        lines = {c.name for c in equations.continua}
-        rows = []
-        for row in equations.rows:
-            form = LinearForm.total([row.form])
-            if row.role != "condition" and not (row.about.kind == "through" and row.about.owner in lines):
-                form = form * _denominator(form)
-            rows.append({places[v]: c for v, c in form.terms if v in places})
-        read = next(o for o in equations.outputs if o.name == output)
-        form = LinearForm.total([read.form])
-        below = _denominator(form)
-        rows.append({places[v]: c for v, c in (form * below).terms if v in places})
-        cramer = equations.memo[output, source] = CramerEquations(
-            equations, rows, read.divisor * below, values
-        )
+        rows, (read,), (divisor,) = bordered(equations, [output], [source])
+        cramer = CramerEquations(equations, [*rows, read], divisor, values)
+        equations.memo[output, source] = cramer
         return cramer
 
     @property
@@ -155,6 +142,32 @@ class CramerEquations:
             return inf, inf  # beyond what a ball's exponent holds, too
         den = _hadamard(sizes[:-1], len(sizes) - 1) + _log(divisor)
         return den, _hadamard(sizes, len(sizes))
+
+
+Entries = list[dict[int, Factored]]  # rows, by column
+
+
+def bordered(
+    equations: Equations, outputs: Sequence[str], sources: Sequence[str]
+) -> tuple[Entries, Entries, list[Factored]]:
+    """Return the rows ``[A B]`` and ``[C D]``, entire in s, and what divides each output."""
+    given = [next(v for v in equations.inputs if v.owner == source) for source in sources]
+    places = {v: i for i, v in enumerate((*equations.unknowns, *given))}
+    lines = {c.name for c in equations.continua}
+    rows = []
+    for row in equations.rows:
+        form = LinearForm.total([row.form])
+        if row.role != "condition" and not (row.about.kind == "through" and row.about.owner in lines):
+            form = form * _denominator(form)
+        rows.append({places[v]: c for v, c in form.terms if v in places})
+    reads, divisors = list[dict[int, Factored]](), list[Factored]()
+    for output in outputs:
+        read = next(o for o in equations.outputs if o.name == output)
+        form = LinearForm.total([read.form])
+        below = _denominator(form) if form.terms else read.divisor**0
+        reads.append({places[v]: c for v, c in (form * below).terms if v in places})
+        divisors.append(read.divisor * below)
+    return rows, reads, divisors
 
 
 def _determinants(solved: Eliminated) -> tuple[acb, acb]:

@@ -131,6 +131,8 @@ class _NetworkReading:
         }
         if equations.model.has_equations:
             _refuse("the model also has [equations]")
+        if equations.model.imposed:
+            _refuse("outputs are imposed")
         replaced = self._signals({v: row for v, row in rows.items() if v.kind in ("signal", "value")})
         rows = {v: put_in(row, replaced) for v, row in rows.items() if v not in replaced}
         read = next(o for o in equations.outputs if o.name == output)

@@ -176,3 +176,19 @@ def test_ten_thousand_digits_are_printed(shell):
     assert found[:9] == "141421356"
     number = sum(int(found[i : i + 1000]) * 10 ** (9000 - i) for i in range(0, 10_000, 1000))
     assert abs(number**2 - 2 * 10**19998) < 4 * 10**9999
+
+
+def test_a_matrix_has_poles_and_zeros_of_its_own(shell):
+    # By hand: det = (1 - s)/((s + 1)^2 (s + 3)); no entry has a zero.
+    (shell.folder / "two.toml").write_text(
+        "symflex = 1\ninputs = { a = {}, b = {} }\n"
+        'outputs = { y = "a/(s + 1) + 2*b/(s + 3)", z = "a/(s + 1) + b/(s + 1)" }\n'
+    )
+    done = shell("roots", "two.toml", "--matrix", "--json")
+    assert [float(zero["re"]) for zero in done.json["zeros"]] == [1]
+    assert done.json["matrix"]["normal_rank"] == 2
+    assert "y,z/a,b   certified: 4 of 4" in shell("roots", "two.toml", "--matrix").out
+    assert shell("roots", "two.toml", "--matrix", "--in", "b", "--out", "y").code == 0
+    assert "no input 'c'" in shell("roots", "two.toml", "--matrix", "--in", "c").err
+    assert "for --matrix" in shell("roots", "two.toml", "--in", "a").err
+    assert "single pairs" in shell("roots", "two.toml", "--matrix", "--explain").err

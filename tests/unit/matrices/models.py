@@ -43,3 +43,56 @@ middle = "w(l/2)"
 
 def model_of(text: str) -> Model:
     return load_model(Source("model.toml", text))
+
+
+def state_space(
+    a: list[list[str]], b: list[list[str]], c: list[list[str]], d: list[list[str]] | None = None
+) -> Model:
+    """Return the model of state equations, whose numbers are written as decimals."""
+    states, inputs = [f"x_{i}" for i in range(len(a))], [f"u_{j}" for j in range(len(b[0]))]
+
+    def combined(rows: list[list[str]], more: list[list[str]]) -> list[str]:
+        sums = []
+        for row, others in zip(rows, more, strict=True):
+            parts = zip([*row, *others], [*states, *inputs], strict=True)
+            sums.append(" + ".join(f"({x})*{name}" for x, name in parts if float(x)) or "0")
+        return sums
+
+    laws = [f'"s*{x} = {e}"' for x, e in zip(states, combined(a, b), strict=True)]
+    reads = combined(c, d or [["0"] * len(inputs) for _ in c])
+    return model_of(
+        "\n".join(
+            [
+                "symflex = 1",
+                "[equations]",
+                f"unknowns = [{', '.join(f'{chr(34)}{x}{chr(34)}' for x in states)}]",
+                f"equations = [{', '.join(laws)}]",
+                "[inputs]",
+                *(f"{u} = {{}}" for u in inputs),
+                "[outputs]",
+                *(f'y_{i} = "{e}"' for i, e in enumerate(reads)),
+            ]
+        )
+    )
+
+
+def of_functions(*rows: list[str]) -> Model:
+    """Return the model of a matrix of functions of s."""
+    inputs = [f"u_{j}" for j in range(len(rows[0]))]
+    sums = (" + ".join(f"({g})*{u}" for g, u in zip(row, inputs, strict=True)) for row in rows)
+    return model_of(
+        "\n".join(
+            [
+                "symflex = 1",
+                "[inputs]",
+                *(f"{u} = {{}}" for u in inputs),
+                "[outputs]",
+                *(f'y_{i} = "{e}"' for i, e in enumerate(sums)),
+            ]
+        )
+    )
+
+
+def numbers(text: str) -> list[list[str]]:
+    """Return a matrix that is written with a row a line."""
+    return [line.split() for line in text.strip().splitlines()]

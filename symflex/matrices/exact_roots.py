@@ -1,0 +1,105 @@
+"""Poles and zeros of a lumped transfer matrix: roots of irreducible factors of its determinants.
+
+Input: a lumped model with numbers. Output: :class:`.matrix_roots.MatrixRoots`.
+
+Example: ``G = [1/(s+1), 2/(s+3); 1/(s+1), 1/(s+1)]``. Candidates are s + 1 and s + 3, of the denominators,
+and s - 1, of det G = (1 - s)/((s+1)^2 (s+3)). The determinant of A has s + 1 twice and s + 3 once, that of
+the system matrix has s - 1 once, and no feedback leaves any of them: poles at -1, -1, -3, a zero at 1.
+
+The candidates are exact. How often each divides the determinants of parts of the system matrix is told modulo
+a prime, and has to make up their degrees.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from flint import fmpz_mpoly
+
+from symflex.algebra import Factored, degree_in, irreducible_factors
+from symflex.matrices.inverse import impose_all
+from symflex.matrices.matrix_roots import DecouplingZero, MatrixRoots, directions, matrix_name
+from symflex.matrices.system_matrix import ByPart, SystemMatrix
+from symflex.matrices.transfer_matrix import derive_matrix
+from symflex.model import Model
+from symflex.roots import Mode, Modes, Region, RootProblem, find_pole_zero_map, find_polynomial_roots
+from symflex.roots.pole_zero_map import chosen
+from symflex.roots.polynomial_roots import in_order
+from symflex.roots.problem import problem_of
+from symflex.transfer import BoundTransferFunction, bind_any
+from symflex.transfer.of_model import assemble
+
+
+@dataclass(frozen=True, eq=False)
+class ExactMatrix:
+    """A lumped matrix with numbers, and the irreducible factors of all its determinants."""
+
+    name: str
+    bound: BoundTransferFunction  # a pair, over a ring that holds all of them
+    matrix: SystemMatrix
+    factors: tuple[tuple[fmpz_mpoly, ByPart[int]], ...]
+    outputs: tuple[str, ...]
+    inputs: tuple[str, ...]
+    rank: int
+
+    @staticmethod
+    def of(numbers: Model, outputs: tuple[str, ...], inputs: tuple[str, ...]) -> ExactMatrix | None:
+        """Return the matrix; ``None`` where factors do not make up the determinants modulo a prime."""
+        source = derive_matrix(numbers, outputs, inputs, "expanded")
+        pairs = source.bind()
+        ring = pairs.over.den.ring
+        matrix = SystemMatrix.of(assemble(numbers), outputs, inputs)
+        modulo = matrix.modulo
+        if modulo is None or (divisors := modulo.divisors) is None:
+            return None
+        each = [bound for bound in pairs.each if isinstance(bound, BoundTransferFunction)]
+        hidden = [Factored.polynomial(b.ratio.ring, h.polynomial).over(ring) for b in each for h in b.hidden]
+        known = [pairs.over.den, *(b.den.over(ring) for b in each), *hidden]
+        candidates = [f for value in known for f, _ in value.factors]
+        # Zeros are among the roots of a minor of the largest order, the product of what is met on its way.
+        met = [bind_any(tf) for tf in impose_all(source).pivots]
+        candidates += [f for b in met if b.is_reduced for f, _ in b.ratio.over(ring).factors]
+        irreducible: list[fmpz_mpoly] = []
+        for candidate in candidates:
+            parts = (f for f, _ in irreducible_factors(candidate)[1] if degree_in(f, 0))
+            irreducible += [f for f in parts if f not in irreducible]
+        images = [modulo.image(f, ring) for f in irreducible]
+        orders = [divisors.orders(image) for image in images]
+        for i, divisor in enumerate(divisors.each):
+            if sum(o.each[i] * f.degree() for o, f in zip(orders, images, strict=True)) != divisor.degree():
+                return None
+        factors = tuple(zip(irreducible, orders, strict=True))
+        name = matrix_name(outputs, inputs)
+        bound = replace(each[0], ratio=pairs.over.den)
+        return ExactMatrix(name, bound, matrix, factors, outputs, inputs, modulo.rank)
+
+    def _problem(self, order: Callable[[ByPart[int]], int]) -> RootProblem:
+        return problem_of(self.bound, [(f, n) for f, orders in self.factors if (n := order(orders))])
+
+    def roots(self, region: Region | None, digits: int) -> MatrixRoots:
+        """Return the roots in a region, all by default."""
+        hidden = self._problem(lambda orders: orders.hidden)
+        poles = self._problem(lambda orders: orders.modes - orders.hidden)
+        zeros = self._problem(lambda orders: orders.system - orders.hidden)
+        located = find_pole_zero_map(self.name, poles, zeros, region, digits, [(hidden, "cancelled")])
+        where = located.region
+        apart = []
+        for factor, orders in ((f, o) for f, o in self.factors if o.hidden):
+            both = orders.input_decoupling + orders.output_decoupling - orders.hidden
+            for root in find_polynomial_roots(problem_of(self.bound, [(factor, 1)]), digits):
+                if isinstance(where, Modes | Mode) or chosen([root], where):
+                    times = replace(root, multiplicity=orders.hidden)
+                    counts = (orders.input_decoupling, orders.output_decoupling, both)
+                    apart.append(DecouplingZero(times, *counts))
+        order = {id(root): i for i, root in enumerate(in_order([each.root for each in apart]))}
+        invariant = find_polynomial_roots(self._problem(lambda orders: orders.invariant), digits)
+        return MatrixRoots(
+            located,
+            self.outputs,
+            self.inputs,
+            self.rank,
+            chosen(invariant, where),
+            tuple(sorted(apart, key=lambda each: order[id(each.root)])),
+            directions(self.matrix, self.rank, located.zeros),
+        )

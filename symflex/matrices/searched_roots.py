@@ -1,0 +1,237 @@
+"""Poles and zeros of a transfer matrix that are searched: those of distributed models, in a region.
+
+Input: a model, and the names of outputs and inputs. Output: :class:`.matrix_roots.MatrixRoots`.
+
+Example: a free beam, pushed and read at both ends. Its poles are those of the function from one input that
+drives both ends to the sum of what is read; its zeros the poles of the beam whose ends are imposed, n pi for
+the roots of the wavenumber, as of a pinned beam. At s = 0 one function shows 2 of the 4 poles of both rigid
+motions. ``[A B]`` and ``[A; C]`` are proved to have full rank there, so the matrix has all four.
+
+A matrix that is not square, or not of full normal rank, has a zero where all its minors of the largest order
+have one. The zeros of one minor are found; where a sum of all of them is proved not to vanish there is none.
+Others are not excluded, which is said.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import combinations
+
+from flint import acb
+
+from symflex import equations as equations_layer
+from symflex.algebra import LAPLACE
+from symflex.balls import precision
+from symflex.equations import Equations
+from symflex.matrices.constrained import driven_at_once, imposed
+from symflex.matrices.matrix_roots import DecouplingZero, MatrixRoots, directions, matrix_name
+from symflex.matrices.system_matrix import SystemMatrix, is_regular
+from symflex.model import Model, with_numbers
+from symflex.model.along import is_tapered
+from symflex.roots import Certificate, Everything, HiddenRoot, PoleZeroMap, Region, Root
+from symflex.roots.locate import locate
+from symflex.roots.passivity import EnergyProof, energy_proof
+from symflex.roots.pole_zero_map import AT_REST, NONE_ON_AXIS, StabilityVerdict, hidden_region, judge
+from symflex.roots.polynomial_roots import in_order
+from symflex.roots.root import count_roots, overlap
+from symflex.transfer.derive import nested_transfer
+from symflex.transfer.of_model import assemble_sparse, derive_for_roots
+
+RANK_BITS = 256  # of the matrix at a point, which proves its normal rank
+POINT = (0.37, 0.61)  # where that is, in abs(s) of the highest pole: far from all roots, most likely
+NOT_FULL = "the normal rank is not proved: more than this was not found"
+NOT_EXCLUDED = "a zero of a matrix that is not square, or not of full rank, is not excluded, and not proved"
+_EXAMINED = PoleZeroMap("", Everything(), (), (), (), Certificate("", 0, 0))  # nothing more is asked of poles
+
+
+@dataclass(frozen=True, eq=False)
+class SearchedMatrix:
+    """A matrix whose poles and zeros are searched in a region."""
+
+    model: Model
+    outputs: tuple[str, ...]
+    inputs: tuple[str, ...]
+    region: Region | None
+    digits: int
+
+    def roots(self) -> MatrixRoots:
+        """Return the roots in the region."""
+        modes = self._located(
+            driven_at_once(self.model, self.outputs, self.inputs),
+            self.region,
+            self.outputs,
+            _EXAMINED if self._is_passive else None,
+        )
+        poles, apart = self._apart(modes)
+        hidden = [each.root for each in apart]
+        pairs, is_proved = self._independent(max((float(root.size().mid()) for root in poles), default=1.0))
+        searched, reasons = [modes], [modes.certificate.reason, None if is_proved else NOT_FULL]
+        invariant: list[Root] = []
+        if pairs:
+            is_square = len(pairs) == len(self.outputs) == len(self.inputs)
+            where = modes.region if is_square else hidden_region(modes.region, poles)
+            located = self._located(imposed(self.model, pairs), where, [y for y, _ in pairs], _EXAMINED)
+            searched.append(located)
+            invariant = _merged([*located.poles, *(h.root for h in located.hidden)])
+            if not is_square:
+                invariant = [root for root in invariant if not self._is_excluded(len(pairs), root)]
+            reasons.append(located.certificate.reason)
+            reasons.append(NOT_EXCLUDED if not is_square and _without(invariant, hidden) else None)
+        zeros = in_order(_without(invariant, hidden))
+        verdict = self._verdict(modes, [*poles, *modes.unstable], hidden)
+        located = PoleZeroMap.of(
+            matrix_name(self.outputs, self.inputs),
+            modes.region,
+            self.digits,
+            ", ".join(sorted({e for each in searched for e in each.certificate.engine.split(", ")})),
+            (in_order(poles), zeros, [HiddenRoot(each.root, each.how) for each in apart]),
+            verdict,
+            growing=modes.unstable,
+            missing=sum(each.certificate.counted - each.certificate.found for each in searched),
+            reasons=reasons,
+            code=next((each.certificate.code for each in searched if each.certificate.code), None),
+            excluded=list(dict.fromkeys(part for each in searched for part in each.excluded)),
+            is_default=modes.is_default_region,
+        )
+        return MatrixRoots(
+            located,
+            self.outputs,
+            self.inputs,
+            len(pairs),
+            in_order(invariant),
+            tuple(apart),
+            directions(self._matrix, len(pairs), zeros),
+        )
+
+    @cached_property
+    def _energy(self) -> list[EnergyProof]:
+        """What energy says of the poles of the model and of each output's own filter."""
+        values = [(p.name, p.value) for p in self.model.parameters if p.value is not None]
+        read = (output for output in self.model.outputs if output.name in self.outputs)
+        return [energy_proof(self.model, values, output) for output in read]
+
+    @property
+    def _is_passive(self) -> bool:
+        return all(proof.is_passive for proof in self._energy)
+
+    def _verdict(self, modes: PoleZeroMap, poles: Sequence[Root], hidden: Sequence[Root]) -> StabilityVerdict:
+        """Return the verdict on the model: by its energy, or that on the modes that one input drives."""
+        if self._is_passive:
+            unsure = "" if all(proof.rests for proof in self._energy) else NONE_ON_AXIS
+            return judge(poles, unsure, self._energy[0].reason, hidden)
+        known = modes.verdict
+        if count_roots(hidden) == count_roots(h.root for h in modes.hidden):
+            return known if hidden or not known.hidden.endswith(AT_REST) else replace(known, hidden="")
+        return judge(poles, "" if known.certified else known.reason, hidden=hidden)
+
+    def _located(
+        self, model: Model, region: Region | None, read: Sequence[str], judged: PoleZeroMap | None
+    ) -> PoleZeroMap:
+        (bound,) = derive_for_roots(model, [(model.outputs[0].name, model.inputs[0].name)])
+        located = locate(bound, region, self.digits, with_zeros=False, judged=judged)
+        return located if bound.is_reduced else self._without_powers_of_fields(located, read)
+
+    def _without_powers_of_fields(self, located: PoleZeroMap, read: Sequence[str]) -> PoleZeroMap:
+        """Return a map without the powers of s that only clear what fields are written with.
+
+        The value of a field with a load along it is one over a power of s, and yet entire. A signal that is
+        that value has its equation times that power, which is no mode.
+        """
+        rows = [row for row in self._equations.outputs if row.name in read]
+        s = self._equations.ring.generator(LAPLACE)
+        spare = sum(row.divisor.exponent_of(s) - row.poles.exponent_of(s) for row in rows)
+        hidden, poles = list[HiddenRoot](), list[Root]()
+        for each in located.hidden:
+            less = min(spare, each.root.multiplicity) if each.root.is_zero else 0
+            spare -= less
+            if each.root.multiplicity > less:
+                root = replace(each.root, multiplicity=each.root.multiplicity - less)
+                hidden.append(replace(each, root=root))
+        for root in located.poles:
+            less = min(spare, root.multiplicity) if root.is_zero else 0
+            spare -= less
+            if root.multiplicity > less:
+                poles.append(replace(root, multiplicity=root.multiplicity - less))
+        return replace(located, poles=tuple(poles), hidden=tuple(hidden))
+
+    @cached_property
+    def _equations(self) -> Equations:
+        numbers = with_numbers(self.model, in_kernels=True)
+        if is_tapered(numbers) or numbers.root:
+            return equations_layer.assemble(numbers, nested_transfer, is_nameless=True)
+        return assemble_sparse(numbers)
+
+    @cached_property
+    def _matrix(self) -> SystemMatrix:
+        return SystemMatrix.of(self._equations, self.outputs, self.inputs)
+
+    def _apart(self, modes: PoleZeroMap) -> tuple[list[Root], list[DecouplingZero]]:
+        """Return the poles of the matrix, and what inputs or outputs of it all miss.
+
+        Of several modes in one place one input and output together see one; all inputs may see the others.
+        """
+        poles, apart = [*modes.poles], []
+        for each in modes.hidden:
+            root, times = each.root, each.root.multiplicity
+            with precision(2 * root.working_bits()):
+                values = self._matrix.on(root.enclosure())
+                is_moved, is_seen = values.is_controllable, values.is_observable
+            if is_moved and is_seen:
+                poles.append(root)
+                continue
+            inputs, outputs = (0 if is_moved else times), (0 if is_seen else times)
+            is_exact = each.is_proved and is_moved != is_seen and times == 1
+            both = inputs + outputs - times
+            apart.append(DecouplingZero(root, inputs, outputs, both, each.cause, is_exact=is_exact))
+        return _merged(poles), apart
+
+    def _independent(self, size: float) -> tuple[list[tuple[str, str]], bool]:
+        """Return pairs whose matrix is proved regular at a point, and whether no more are independent.
+
+        With functions of members as independent names, modulo a prime, no rank is smaller.
+        """
+        most, found = min(len(self.outputs), len(self.inputs)), list[tuple[str, str]]()
+        with precision(RANK_BITS):
+            values = self._matrix.on(acb(*(size * part for part in POINT)))
+            places = (
+                zip(rows, columns, strict=True)
+                for rank in range(most, 0, -1)
+                for rows in combinations(range(len(self.outputs)), rank)
+                for columns in combinations(range(len(self.inputs)), rank)
+                if is_regular(values.minor(rows, columns))
+            )
+            found = [(self.outputs[i], self.inputs[j]) for i, j in next(places, ())]
+        modulo = self._matrix.modulo
+        return found, len(found) == most or (modulo is not None and len(found) == modulo.rank)
+
+    def _is_excluded(self, rank: int, root: Root) -> bool:
+        with precision(2 * root.working_bits()):
+            return is_regular(self._matrix.on(root.enclosure()).squared(rank))
+
+
+def _merged(roots: Sequence[Root]) -> list[Root]:
+    """Return roots, those that overlap as one."""
+    found: list[Root] = []
+    for root in roots:
+        i = next((i for i, other in enumerate(found) if overlap(root, other)), None)
+        if i is None:
+            found.append(root)
+        else:
+            other = found[i]
+            is_same = root.certified and other.certified and root.is_zero and other.is_zero
+            found[i] = replace(other, multiplicity=other.multiplicity + root.multiplicity, certified=is_same)
+    return found
+
+
+def _without(roots: Sequence[Root], others: Sequence[Root]) -> list[Root]:
+    """Return roots less others at the same place."""
+    left = list(roots)
+    for other in others:
+        times = other.multiplicity
+        for i, root in enumerate(left):
+            if times and root.multiplicity and overlap(root, other):
+                common = min(times, root.multiplicity)
+                left[i], times = replace(root, multiplicity=root.multiplicity - common), times - common
+    return [root for root in left if root.multiplicity]
