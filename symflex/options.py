@@ -214,6 +214,11 @@ class ExportOptions:
     is_direct: bool = option(
         False, "--direct", help="--sample: one section for all poles, not one for each pair."
     )
+    is_matrix: bool = option(
+        False, "--matrix", help="Code: one more function, of the matrix of all functions."
+    )
+    inputs: str = option("", "--in", **ENDS, help="--matrix: inputs, such as u1,u2.  [default: all]")
+    outputs: str = option("", "--out", **ENDS, help="--matrix: outputs, such as y1,y2.  [default: all]")
     strict: bool = option(False, "--strict", help="Exit with code 4 if the verified accuracy falls short.")
 
 

@@ -18,6 +18,8 @@ from symflex.expressions import Equation
 from symflex.options import AuditOptions, CheckOptions, DeriveOptions, ExportOptions, highest_frequency
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from symflex.audit import Audit
     from symflex.audit.tables import TableAudit
     from symflex.codegen.export import Exporter
@@ -230,15 +232,15 @@ def _column(given: DeriveOptions) -> float | None:
     return column_width(given.width)
 
 
-def refuse_ends(given: DeriveOptions) -> None:
+def refuse_ends(given: DeriveOptions | ExportOptions) -> None:
     """Refuse names of inputs and outputs without the matrix whose rows and columns they choose."""
     if given.inputs or given.outputs:
         raise refused("--in and --out choose the columns and rows of a matrix", "add --matrix, or name --tf")
-    if given.is_rga:
+    if isinstance(given, DeriveOptions) and given.is_rga:
         raise refused("--rga is for a matrix", "add --matrix")
 
 
-def names_of_ends(given: DeriveOptions) -> tuple[list[str], list[str]]:
+def names_of_ends(given: DeriveOptions | ExportOptions) -> tuple[list[str], list[str]]:
     """Return the outputs and inputs named."""
     if given.tfs:
         raise refused("--tf names single functions", "choose rows and columns with --out and --in")
@@ -338,6 +340,9 @@ def export(spec: Specification, given: ExportOptions) -> int:
     error. A target with several files, such as c with its header, writes them all beside the file of -o, and
     as one text to standard output.
 
+    --matrix adds a function of all at once. It returns an array of shape (outputs, inputs), followed by that
+    of s; code for numpy computes what entries have in common once.
+
     --to latex -o FOLDER/ writes every transfer function, table and figure to a file of its own, which a paper
     can input, and document.tex, which inputs them all.
 
@@ -374,7 +379,11 @@ def export(spec: Specification, given: ExportOptions) -> int:
     model = spec.load()
     form = given.form if given.target == "latex" else None
     representation = chosen_representation(given.representation, form)
-    pairs = pipeline.pick_pairs(model, given.tfs)
+    if given.is_matrix:
+        exporter, pairs = _for_matrix(exporter, model, given)
+    else:
+        refuse_ends(given)
+        pairs = pipeline.pick_pairs(model, given.tfs)
     derived, reason = pipeline.derive_as(
         model, pairs, representation, solves=exporter.solves, is_read=given.target in ("latex", "typst")
     )
@@ -405,6 +414,26 @@ def export(spec: Specification, given: ExportOptions) -> int:
     else:
         say(made.text, nl=False)
     return 4 if given.strict and made.warnings else 0
+
+
+def _for_matrix(
+    exporter: Exporter, model: Model, given: ExportOptions
+) -> tuple[Exporter, Sequence[tuple[str, str]]]:
+    """Return the exporter with a function of the matrix, and the pairs of that."""
+    from symflex.codegen.export import Language
+    from symflex.codegen.state_space import StateSpaceExporter
+    from symflex.matrices.transfer_matrix import picked
+
+    outputs, inputs = names_of_ends(given)
+    rows = picked("output", outputs, [o.name for o in model.outputs])
+    columns = picked("input", inputs, [i.name for i in model.inputs])
+    pairs = [(y, u) for y in rows for u in columns]
+    if isinstance(exporter, StateSpaceExporter):
+        return exporter, pairs
+    if not isinstance(exporter, Language):
+        hint = "derive --matrix prints formulas; without --matrix, all functions are written"
+        raise refused(f"--matrix is not for --to {given.target}", hint)
+    return replace(exporter, rows=tuple(tuple(f"{y}/{u}" for u in columns) for y in rows)), pairs
 
 
 def _chosen(given: ExportOptions) -> Exporter:

@@ -46,6 +46,7 @@ from symflex.model import Model, ModelParameter
 from symflex.model.loss_factors import check_causal
 from symflex.transfer import AnyTransferFunction
 
+MATRIX = "transfer_matrix"  # what the function of all entries is called
 BAND = "band"  # the form of code that is a product over poles and zeros
 ACCURACY = 1e-13  # relative error of exported code above which the user is warned
 LOST = 1e-8  # that of a formula with kernels, half of a double's digits, above which the band form is better
@@ -132,6 +133,39 @@ class Member:
 
 
 @dataclass(frozen=True, slots=True)
+class MatrixMember:
+    """The function that returns all values of a matrix at once."""
+
+    rows: tuple[tuple[Member, ...], ...]  # the functions of s of its entries, a row per output
+    # Computes all entries, row by row, and shares what they have in common; None where each is called.
+    program: Piecewise | None = None
+    verification: Verification | None = None  # how well the worst entry of the program agrees
+
+    @property
+    def each(self) -> tuple[Member, ...]:
+        """The functions of all entries, row by row."""
+        return tuple(member for row in self.rows for member in row)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """How many outputs and inputs it has."""
+        return len(self.rows), len(self.rows[0])
+
+    @property
+    def parameters(self) -> tuple[ModelParameter, ...]:
+        """The parameters that some entry takes, in declared order."""
+        used = {p.name for member in self.each for p in member.parameters}
+        return tuple(p for p in self.rows[0][0].tf.model.parameters if p.name in used)
+
+    @property
+    def headline(self) -> str:
+        """What it computes, in one inert line."""
+        outputs = ", ".join(row[0].tf.output.name for row in self.rows)
+        inputs = ", ".join(member.tf.input.name for member in self.rows[0])
+        return inert(f"Transfer matrix of {outputs} (rows) by {inputs} (columns).")
+
+
+@dataclass(frozen=True, slots=True)
 class Contents:
     """What a file of numeric code consists of, in no language yet."""
 
@@ -140,6 +174,7 @@ class Contents:
     members: tuple[Member, ...]
     stem: str  # the file's name without suffix; empty for none
     is_alone: bool  # there can be no other files beside it
+    matrix: MatrixMember | None = None  # the function of all at once, where one is wanted
 
     def names(self, reserved: Collection[str]) -> tuple[Mapping[str, str], Mapping[str, str]]:
         """Return identifiers of members by their keys, and of parameters by their names."""
@@ -244,6 +279,10 @@ class Language:
     is_complex: bool = False  # true where parameters may be complex, as the imaginary unit is
     has_real: bool = False  # true where frequency responses are computed in real arithmetic
     form: str | None = None  # "band" to write all functions in band form
+    rows: tuple[
+        tuple[str, ...], ...
+    ] = ()  # names of functions that are wanted as one matrix, a row per output
+    shares: bool = False  # true where the function of a matrix has a program of its own
     up_to: Fraction | None = None  # where the band of band forms ends [Hz]
 
     @property
@@ -287,7 +326,19 @@ class Language:
         members: list[Member] = []
         for tf in {tf.name: tf for tf in tfs}.values():
             members += self._members(tf, samples)
-        return Contents(model, tuple(members), stem, is_alone)
+        matrix = self._matrix(members) if self.rows else None
+        return Contents(model, tuple(members), stem, is_alone, matrix)
+
+    def _matrix(self, members: Sequence[Member]) -> MatrixMember:
+        """Return the function of all entries, with a program of its own where that shares something."""
+        of_s = {m.tf.name: m for m in members if not m.is_response}
+        plain = MatrixMember(tuple(tuple(of_s[name] for name in row) for row in self.rows))
+        if not self.shares or any(m.is_fixed or not m.program.is_lumped for m in plain.each):
+            return plain
+        from symflex.codegen.program.matrix import matrix_program  # few exports are of matrices
+
+        made = matrix_program([[m.tf for m in row] for row in plain.rows])
+        return plain if made is None else replace(plain, program=made[0], verification=made[1])
 
     def _members(self, tf: AnyTransferFunction, samples: int) -> tuple[Member, ...]:
         """Return a transfer function and its frequency response, where there is one, or its band form."""

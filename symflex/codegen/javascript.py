@@ -18,7 +18,16 @@ from dataclasses import dataclass, field, replace
 from functools import reduce
 from itertools import count
 
-from symflex.codegen.export import Contents, Export, Language, Member, Outline, called_parts, parts_of
+from symflex.codegen.export import (
+    MATRIX,
+    Contents,
+    Export,
+    Language,
+    Member,
+    Outline,
+    called_parts,
+    parts_of,
+)
 from symflex.codegen.module_text import identifiers, statement_lines
 from symflex.codegen.program import nodes as tree
 from symflex.codegen.program.derivative import differentiated
@@ -436,6 +445,13 @@ def javascript_module(contents: Contents) -> Export:
         private = functions.blocks()
         blocks += [*private, _public(m, functions)]
         code += "\n".join(private)
+    if contents.matrix is not None:
+        (whole,) = identifiers({"": MATRIX}, {*RESERVED, *public.values()}).values()
+        calls = ([f"{public[m.key]}(s, values)" for m in row] for row in contents.matrix.rows)
+        said = [contents.matrix.headline, "", "@returns {Array} rows of values, each as of its function"]
+        lines = [line for row in calls for line in statement_lines(f"[{', '.join(row)}],", WIDTH, "    ")]
+        head = f"export const {whole} = (s, values = {{}}) => ["
+        blocks.append("\n".join([*comment(said), head, *lines, "];", ""]))
     blocks += called_parts(code, PARTS, ["imaginary", "offered"])
     rows = JAVASCRIPT_OUTLINE.function_rows({m.tf.name: public[m.key] for m in members})
     table = ["export const TRANSFER_FUNCTIONS = Object.freeze({", *rows, "});", ""]

@@ -3,11 +3,21 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
-from symflex.codegen.export import Contents, Export, Language, Member, Outline, called_parts, parts_of
+from symflex.codegen.export import (
+    MATRIX,
+    Contents,
+    Export,
+    Language,
+    MatrixMember,
+    Member,
+    Outline,
+    called_parts,
+    parts_of,
+)
 from symflex.codegen.infix import InfixPrinter, PrivateFunctions, in_lines
 from symflex.codegen.module_text import default_value, identifiers
 from symflex.codegen.program.nodes import ONE, CodePiece, Laplace, Piecewise
@@ -25,7 +35,7 @@ NAMES = frozenset(  # what generated code uses, and names that a reader or the m
     "imag conj complex float signbit cis zero one zeros length eltype iszero isfinite all max min maximum "
     "ceil log2 fill push findfirst zip Base Core Main LinearAlgebra Number Real Complex ComplexF64 Float64 "
     "Int Tuple Vector Vararg Dict String NamedTuple eval include PARAMETERS TRANSFER_FUNCTIONS "
-    "FREQUENCY_RESPONSES".split()
+    "FREQUENCY_RESPONSES permutedims reshape".split()
 )
 RESERVED = KEYWORDS | NAMES | {"s"}
 
@@ -138,6 +148,10 @@ def julia_module(contents: Contents) -> Export:
         private = [] if m.is_response else functions.blocks()
         blocks += [_public(m, functions, of_s), *private]
         code += "\n".join(private)
+    if contents.matrix is not None:
+        (whole,) = identifiers({"": MATRIX}, taken).values()
+        blocks.append(_matrix(contents.matrix, whole, public, parameters))
+        public = {**public, "": whole}
     blocks += called_parts(code, parts_of("julia.jl"))
     for name, is_response in (("TRANSFER_FUNCTIONS", False), ("FREQUENCY_RESPONSES", True)):
         named = {m.tf.name: public[m.key] for m in members if m.is_response == is_response}
@@ -156,6 +170,27 @@ def julia_module(contents: Contents) -> Export:
         header += [f"export {first}", *(f"    {line}" for line in others), ""]
     text = "\n".join([*header, "\n".join(blocks), f"end # module {main}", ""])
     return Export(text, name=main)
+
+
+def _matrix(matrix: MatrixMember, name: str, public: Mapping[str, str], parameters: Mapping[str, str]) -> str:
+    """Return the function that calls those of all entries."""
+    rows, columns = matrix.shape
+    signature = []
+    for p in matrix.parameters:
+        default = default_value(p)
+        signature.append(f"{parameters[p.name]}::Number{f' = {default}' if default else ''}")
+    lines = [f"    {name}(s{'; ...' if signature else ''})", "", _disarmed(matrix.headline), ""]
+    lines.append("Parameters are those of its functions.")
+    head = [f"function {name}(s::Number;", *(f"    {x}," for x in signature), ")"]
+    if not signature:
+        head = [f"function {name}(s::Number)"]
+    body = ["    values = ["]
+    for member in matrix.each:
+        given = "; " * bool(member.parameters)
+        given += ", ".join(f"{parameters[p.name]} = {parameters[p.name]}" for p in member.parameters)
+        body.append(f"        {public[member.key]}(s{given}),")
+    body += ["    ]", f"    return permutedims(reshape(values, {columns}, {rows}))", "end", ""]
+    return "\n".join([*_docstring(lines), *head, *body])
 
 
 def module_name(text: str) -> str:

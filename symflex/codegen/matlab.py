@@ -8,7 +8,17 @@ from dataclasses import dataclass
 from typing import ClassVar, Final
 
 from symflex.algebra import LAPLACE, Factored
-from symflex.codegen.export import Contents, Export, Language, Member, Outline, called_parts, parts_of
+from symflex.codegen.export import (
+    MATRIX,
+    Contents,
+    Export,
+    Language,
+    MatrixMember,
+    Member,
+    Outline,
+    called_parts,
+    parts_of,
+)
 from symflex.codegen.infix import InfixPrinter, PrivateFunctions, in_lines
 from symflex.codegen.module_text import (
     FORMULA_TERMS,
@@ -59,7 +69,8 @@ _LINK = re.compile(r"<(?=[A-Za-z/])")
 ROOM = WIDTH - 4  # columns of help texts
 
 OTHER_FIELDS = frozenset(  # other fields of the struct that the main function returns
-    "parameters units descriptions transfer_functions frequency_responses systems coefficients".split()
+    "parameters units descriptions transfer_matrix transfer_functions frequency_responses systems "
+    "coefficients".split()
 )
 SYSTEM_ROLES = ("system", "coefficients")  # the two functions of a rational transfer function
 
@@ -227,7 +238,7 @@ class _File:
 
     def __init__(self, contents: Contents) -> None:
         self.model, self.members = contents.model, contents.members
-        self.stem = contents.stem
+        self.stem, self.matrix = contents.stem, contents.matrix
         self.main = main_name(self.stem or self.model.title)
         wanted = {m.key: m.wanted for m in self.members}
         self.fields = identifiers(wanted, RESERVED | OTHER_FIELDS, LONGEST)
@@ -244,6 +255,26 @@ class _File:
         self.taken |= set(self.private.values())
         names = {p.name: p.name for p in self.model.parameters}
         self.parameters = identifiers(names, self.taken, LONGEST)
+
+    @property
+    def whole(self) -> str:
+        """The name of the function of a whole matrix."""
+        return identifiers({"": MATRIX}, self.taken, LONGEST)[""]
+
+    def _matrix(self, matrix: MatrixMember) -> str:
+        """Return the function that calls those of all entries."""
+        rows, columns = matrix.shape
+        said = [
+            _disarmed(matrix.headline),
+            f"Of size [{rows} {columns} numel(s)] for a vector s, else [{rows} {columns} size(s)].",
+        ]
+        lines = [f"  parts = cell({rows}, {columns});"]
+        for i, row in enumerate(matrix.rows, 1):
+            for j, m in enumerate(row, 1):
+                lines += continued(f"parts{{{i}, {j}}} = {self.public[m.key]}(s, varargin{{:}});", "  ")
+        head = f"function value = {self.whole}(s, varargin)"
+        first = f"{self.whole.upper()}  {said[0]}"
+        return _function(head, *_helped(first, said[1:]), *lines, "  value = stacked(parts);")
 
     def _roles(self, member: Member) -> list[str]:
         """Return what the private functions of a member are for; their names end so."""
@@ -272,7 +303,11 @@ class _File:
             code += "\n".join([*functions.call(), *local])
             if m.key in self.systems:
                 blocks += self._system_functions(self.systems[m.key], private_names)
-        blocks += called_parts(code, PARTS, ("numbers", "columns", *(["system_of"] if self.systems else [])))
+        always = ["numbers", "columns", *(["system_of"] if self.systems else [])]
+        if self.matrix is not None:
+            blocks.append(self._matrix(self.matrix))
+            always.append("stacked")
+        blocks += called_parts(code, PARTS, always)
         shown = inert(self.stem[:LONGEST_STEM])
         warning = f"MATLAB cannot call a file '{shown}.m': name it '{self.main}.m', as its function"
         is_other = self.stem and self.main != self.stem
@@ -284,6 +319,7 @@ class _File:
         first = f"{self.main.upper()}  Transfer functions of{f': {title}' if title else ' a linear system.'}"
         lines = [f"function G = {self.main}()", *_helped(first), *_helped("", self._usage()), ""]
         lines += [f"  G.{self.fields[m.key]} = @{self.public[m.key]};" for m in self.members]
+        lines += [f"  G.{MATRIX} = @{self.whole};"] if self.matrix is not None else []
         for group, role in (("systems", "system"), ("coefficients", "coefficients")):
             lines += [f"  G.{group} = struct();"] if self.systems else []
             lines += [f"  G.{group}.{self.fields[key]} = @{self.private[key, role]};" for key in self.systems]

@@ -134,7 +134,7 @@ def _over_denominator(
     matrix: TransferMatrix, form: str | None, digits: int, arranged: Arranged
 ) -> MatrixForm:
     """Return one form of a matrix over d(s): the fraction in front, and each numerator."""
-    parts = _closed_parts(matrix) or _opened_parts(matrix)
+    parts = closed_parts(matrix) or _opened_parts(matrix)
     merger = _Merger(matrix)
     above, den = merger.add(print_part(parts[0], form, digits, arranged))
     entries: list[Expression] = []
@@ -170,7 +170,7 @@ def _opened_parts(matrix: TransferMatrix) -> list[TransferFunction]:
     return [part(shared, over.den), *(part(n / shared, one) for n in entries)]
 
 
-def _closed_parts(matrix: TransferMatrix) -> list[TransferFunction] | None:
+def closed_parts(matrix: TransferMatrix) -> list[TransferFunction] | None:
     """Return the same with sums closed, None where an entry had to be reduced without these."""
     each = [tf for tf in matrix.each if isinstance(tf, TransferFunction) and not tf.is_zero]
     forms = [tf.closed for tf in each if tf.closed is not None]

@@ -8,7 +8,7 @@ from itertools import count
 
 from symflex.codegen.c.body import KEYWORDS, LANE_FUNCTIONS, PARTS, RESERVED
 from symflex.codegen.c.functions import Functions, fits_lanes
-from symflex.codegen.export import Contents, Export, Language, Outline, called_parts
+from symflex.codegen.export import MATRIX, Contents, Export, Language, MatrixMember, Outline, called_parts
 from symflex.codegen.module_text import (
     WIDTH,
     BlockComment,
@@ -85,6 +85,9 @@ class _Files:
             arguments = (own_name, self.prefix, self.structure, self.members, self.of_s[key].program)
             axis = self.on_axis[key].program if key in self.on_axis else None
             self.functions[key] = Functions(*arguments, axis)
+        self.matrix = contents.matrix
+        free = (f"{self.prefix}_{MATRIX}" + "_" * n for n in count())
+        self.whole = next(n for n in free if n.removeprefix(f"{self.prefix}_") not in taken)
 
     def made(self) -> Export:
         declared = []
@@ -97,6 +100,8 @@ class _Files:
             "#endif",
             "",
         ]
+        if self.matrix is not None:
+            declared += [*COMMENT.lines(self._said_of_matrix(self.matrix)), f"{self._matrix_head()};", ""]
         inside = [*self._parameters(), *declared, *with_complex]
         return source_and_header(self.name, self._introduction(), INCLUDED, inside, self._source())
 
@@ -163,6 +168,27 @@ class _Files:
             lines += wrapped(inert(sentence), OUTLINE.room)
         return lines
 
+    def _said_of_matrix(self, matrix: MatrixMember) -> list[str]:
+        rows, columns = matrix.shape
+        what = (
+            f"At s = j omega[i] for all i < n. Entry (j, k) stands at ({columns} j + k) n + i of real and "
+            f"imag, which have room for {rows * columns} n numbers."
+        )
+        return [matrix.headline, "", *wrapped(what, OUTLINE.room)]
+
+    def _matrix_head(self) -> str:
+        given = "const double *omega, double *real, double *imag, size_t n"
+        opening = f"void {self.whole}_freq("
+        return f"{opening}{given},\n{' ' * len(opening)}const {self.structure} *p)"
+
+    def _matrix(self, matrix: MatrixMember) -> str:
+        """Return the function that calls those of all entries."""
+        lines = [self._matrix_head(), "{"]
+        for k, member in enumerate(matrix.each):
+            own, at = self.functions[member.tf.name], f" + {k} * n" if k else ""
+            lines.append(f"    {self.prefix}_{own.name}_freq(omega, real{at}, imag{at}, n, p);")
+        return "\n".join([*lines, "}", ""])
+
     # ---------------------------------------------------------------------------------------- the source
 
     def _source(self) -> str:
@@ -174,6 +200,7 @@ class _Files:
         signs = {"float": "FLT_EVAL_METHOD", "math": "", "stdint": "uint64_t", "string": "memcpy("}
         includes = "".join(f"#include <{name}.h>\n" for name, sign in signs.items() if sign in below)
         parts = [includes, self._defaults(), below, code]
+        parts += [self._matrix(self.matrix)] if self.matrix is not None else []
         return "\n".join(part for part in parts if part)
 
     def _defaults(self) -> str:

@@ -205,6 +205,21 @@ def schedule(
     return _Schedule(forge, near, far).program(parameters, limit)
 
 
+def schedule_all(
+    forge: Forge, parameters: tuple[str, ...], near: Sequence[int], far: Sequence[int] | None, limit: float
+) -> tree.Piecewise:
+    """Return the program that computes several values, which share what they have in common."""
+    run = _Schedule(forge, near[0], None)
+    every = [*near, *(far or ())]
+    late = set() if far is None else run.reached(list(far)) - run.reached(list(near))
+    constants, at_near, at_far = run.sections(every, late, shared=True)
+    first = tree.Straight(constants, at_near, tuple(run.nodes[x] for x in near))
+    if far is None:
+        return tree.lumped(parameters, first, None, limit)
+    second = tree.Straight(constants, at_near + at_far, tuple(run.nodes[x] for x in far))
+    return tree.lumped(parameters, first, second, limit)
+
+
 def straight(forge: Forge, values: Sequence[int]) -> tree.Straight:
     """Return the code that computes several values."""
     run = _Schedule(forge, values[0], None)
@@ -223,7 +238,7 @@ class _Schedule:
 
     def program(self, parameters: tuple[str, ...], limit: float) -> tree.Piecewise:
         roots = [x for x in (self.near, self.far) if x is not None]
-        late = set() if self.far is None else self._reached([self.far]) - self._reached([self.near])
+        late = set() if self.far is None else self.reached([self.far]) - self.reached([self.near])
         constants, at_near, at_far = self.sections(roots, late)
         near, far = tree.Straight(constants, at_near, (self.nodes[self.near],)), None
         if self.far is not None:
@@ -234,7 +249,7 @@ class _Schedule:
         self, roots: list[int], late: set[int], *, shared: bool = False
     ) -> tuple[tuple[tree.Assignment, ...], tuple[tree.Assignment, ...], tuple[tree.Assignment, ...]]:
         """Return assignments free of s, those with s, and those in ``late``; expressions go to ``nodes``."""
-        reached = self._reached(roots)
+        reached = self.reached(roots)
         uses = self._uses(reached)
         sections: tuple[list[tree.Assignment], list[tree.Assignment], list[tree.Assignment]] = ([], [], [])
         for x in sorted(reached):
@@ -256,7 +271,8 @@ class _Schedule:
         constants, early, after = (tuple(section) for section in sections)
         return constants, early, after
 
-    def _reached(self, roots: list[int]) -> set[int]:
+    def reached(self, roots: list[int]) -> set[int]:
+        """Return the expressions that some are made of, these among them."""
         visited: set[int] = set()
         pending = list(roots)
         while pending:

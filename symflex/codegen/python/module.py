@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
-from symflex.codegen.export import Contents, Export, Language, Member, Outline
+from symflex.codegen.export import MATRIX, Contents, Export, Language, MatrixMember, Member, Outline
 from symflex.codegen.module_text import (
     FOLLOWED,
     WIDTH,
@@ -68,6 +69,12 @@ def python_module(contents: Contents, dialect: Dialect) -> Export:
         # Functions of one model solve the same network.
         blocks.append("\n".join([*solving, ""]))
         code += blocks[-1]
+    if contents.matrix is not None:
+        taken = {*dialect.reserved, *functions.values(), *responses.values()}
+        (name,) = identifiers({"": MATRIX}, taken).values()
+        printed = _matrix(contents.matrix, name, functions, names, values, dialect)
+        blocks += printed
+        code += "\n".join(printed)
     blocks += dialect.support(code)
     blocks.append(function_table("TRANSFER_FUNCTIONS", functions))
     is_piecewise = not all(member.program.is_lumped for member in members)
@@ -137,6 +144,47 @@ class _Function:
         for note in notes:
             lines += wrapped(inert(note), WIDTH, "    ")
         return docstring(lines, "    ")
+
+
+def _matrix(
+    matrix: MatrixMember,
+    name: str,
+    functions: Mapping[str, str],
+    names: Mapping[str, str],
+    values: Mapping[str, Any],
+    dialect: Dialect,
+) -> list[str]:
+    """Return the function of all entries, and what it calls: those of single entries, or its own."""
+    rows, columns = matrix.shape
+    parameters = [names[p.name] for p in matrix.parameters]
+    lines = [f"def {name}(", f"    s: {dialect.argument},"]
+    lines += ["    *,"] if parameters or dialect.is_argument else []
+    for parameter in matrix.parameters:
+        value = default_value(parameter)
+        lines.append(f"    {names[parameter.name]}: {dialect.argument}{f' = {value}' if value else ''},")
+    lines += [f"    {dialect.space}: {dialect.argument} = None,"] if dialect.is_argument else []
+    lines.append(f") -> {dialect.result}:")
+    said = [matrix.headline, "", "Parameters are those of its functions.", "", "Returns", "-------"]
+    said += [dialect.returned[0], f"    Of shape ({rows}, {columns}) followed by that of all arguments."]
+    if matrix.verification is not None:
+        said += ["", "Notes", "-----", *wrapped(inert(matrix.verification.text()), WIDTH - 4)]
+    lines += [docstring([f"    {line}" for line in said], "    ").rstrip("\n")]
+    if matrix.program is None:
+        for member in matrix.each:
+            given = [f"{names[p.name]}={names[p.name]}" for p in member.parameters]
+            given += [f"{dialect.space}={dialect.space}"] if dialect.is_argument else []
+            call = f"{functions[member.tf.name]}({', '.join(['s', *given])}),"
+            lines += ["    values = ["] if member is matrix.each[0] else []
+            lines.append(f"        {call}")
+        space = f"{dialect.space}, " if dialect.is_argument else ""
+        stacked = f"_stacked({space}values, {rows}, {columns})"
+        return ["\n".join([*lines, "    ]", *statement("return", stacked, "    "), ""])]
+    text = BlockText(matrix.program, name, names, values, dialect)
+    given = [names[p] for p in matrix.program.parameters]
+    lines += statement("arguments", f"_numbers({', '.join(['s', *given])})", "    ")
+    value = f"_matrix_in_blocks(_value_of_{name}, arguments, {rows}, {columns})"
+    lines += ['    with np.errstate(all="ignore"):', *statement("return", value, "        "), ""]
+    return ["\n".join(lines), "\n".join([*text.matrix(), ""])]
 
 
 def header(first: str, model: Model, verified: Sequence[Verification], remark: str = "") -> str:
@@ -217,6 +265,7 @@ NUMPY = Language(
     is_open=True,
     is_complex=True,
     has_real=True,
+    shares=True,
 )
 ARRAY_API = Language(
     ".py",

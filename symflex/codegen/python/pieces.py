@@ -214,6 +214,37 @@ class BlockText(PrivateText):
             f"    return {local_names['value']}",
         ]
 
+    def matrix(self) -> list[str]:
+        """Return the function that computes all entries of a matrix with arrays of any shape."""
+        program, near, far = self.program, self.program.near, self.program.far
+        used = {*self.dialect.reserved, *self.arguments[1:]}
+        words = identifiers({n: n for n in ("values", "others", "is_far", "inverse")}, used)
+        used |= set(words.values())
+        intermediates = identifiers({a.name: a.name for a in (*near.every, *program.late)}, used)
+        printer = NumpyPrinter(self.parameters, intermediates, "s", words["inverse"])
+        lines = [f"def _value_of_{self.name}({', '.join(self.arguments)}):"]
+        for assignment in near.every:
+            lines += printer.assignment(assignment.name, assignment.value, "    ")
+
+        def listed(target: str, values: Sequence[tree.CodeNode], indent: str) -> list[str]:
+            opening = f"{indent}{target} [" if target == "return" else f"{indent}{target} = ["
+            return [opening, *(f"{indent}    {printer.print(v)}," for v in values), f"{indent}]"]
+
+        if far is None:
+            return [*lines, *listed("return", near.values, "    ")]
+        values, others, is_far, inverse = words.values()
+        lines += listed(values, near.values, "    ")
+        lines += [
+            f"    {is_far} = np.abs(s) > {program.limit!r}",
+            f"    if np.any({is_far}):",
+            f"        {inverse} = 1.0 / s",
+        ]
+        for assignment in program.late:
+            lines += printer.assignment(assignment.name, assignment.value, "        ")
+        chosen = f"[np.where({is_far}, b, a) for a, b in zip({values}, {others}, strict=True)]"
+        lines += [*listed(others, far.values, "        "), f"        {values} = {chosen}"]
+        return [*lines, f"    return {values}"]
+
     def _body(self, code: tree.Straight, variable: str) -> tuple[list[str], PythonPrinter]:
         taken = {*self.dialect.reserved, *self.parameters.values(), self.variable, variable, "z"}
         names = identifiers({a.name: a.name for a in code.every}, taken)

@@ -83,6 +83,17 @@ def _shaped(xp, value, arguments):
     return complex(value) if not shape and xp.__name__ == "numpy" else value
 
 
+#: _stacked
+def _stacked(xp, values, rows, columns):
+    """Return values of single functions as a matrix, whose axes come first."""
+    xp = _namespace(values) if xp is None else xp
+    place = _place(xp, values)
+    arrays = [xp.asarray(value, dtype=xp.complex128, **place) for value in values]
+    shape = _shape(arrays)
+    wide = [array + xp.zeros(shape, dtype=xp.complex128, **place) for array in arrays]
+    return xp.reshape(xp.stack(wide), (rows, columns, *shape))
+
+
 #: _real_numbers
 def _real_numbers(xp, *arguments):
     """Return what _numbers does, of real numbers alone."""

@@ -31,6 +31,13 @@ def _shaped(value, arguments):
     return jnp.broadcast_to(value, _shape(arguments))
 
 
+#: _stacked
+def _stacked(values, rows, columns):
+    """Return values of single functions as a matrix, whose axes come first."""
+    wide = jnp.stack(jnp.broadcast_arrays(*values))
+    return wide.reshape(rows, columns, *wide.shape[1:])
+
+
 #: _is_idle _found _size
 def _is_idle(serves):
     """Tell that a piece serves no element; False where values are not known yet."""

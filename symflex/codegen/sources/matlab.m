@@ -59,6 +59,24 @@ function value = everywhere(formula, s, given)
   value = reshape(formula(s, given{:}) .* ones(size(s)), shape);
 end
 
+%: stacked
+function value = stacked(parts)
+%STACKED  Values of all entries of a matrix, whose rows and columns come first.
+  whole = 0;
+  for k = 1:numel(parts)
+    whole = whole + zeros(size(parts{k}));
+  end
+  value = complex(zeros(numel(parts), numel(whole)));
+  for k = 1:numel(parts)
+    value(k, :) = reshape(parts{k} + whole, 1, []);
+  end
+  shape = size(whole);
+  if numel(shape) == 2 && any(shape == 1)
+    shape = numel(whole);
+  end
+  value = reshape(value, [size(parts), shape]);
+end
+
 %: in_pieces
 function value = in_pieces(number_of, pieces, s, given)
 %IN_PIECES  What the piece that serves gives, element by element.

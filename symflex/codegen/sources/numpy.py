@@ -46,6 +46,33 @@ def _in_blocks(function, arguments):
     return value
 
 
+#: _matrix_in_blocks
+def _matrix_in_blocks(function, arguments, rows, columns):
+    """Return all entries of a matrix, each in the shape of all arguments together."""
+    shape = np.broadcast_shapes(*(np.shape(a) for a in arguments))
+    value = np.empty((rows * columns, *shape), dtype=complex)
+    expands = any(np.shape(a) not in ((), shape) for a in arguments)
+    if expands or not shape or value[0].size <= BLOCK:
+        for k, entry in enumerate(function(*arguments)):
+            value[k] = entry
+        return value.reshape(rows, columns, *shape)
+    flat = value.reshape(rows * columns, -1)
+    given = [a.reshape(-1) if np.ndim(a) else a for a in arguments]
+    for start in range(0, flat.shape[1], BLOCK):
+        part = slice(start, start + BLOCK)
+        own = (a[part] if np.ndim(a) else a for a in given)
+        for k, entry in enumerate(function(*own)):
+            flat[k, part] = entry
+    return value.reshape(rows, columns, *shape)
+
+
+#: _stacked
+def _stacked(values, rows, columns):
+    """Return values of single functions as a matrix, whose axes come first."""
+    value = np.array(np.broadcast_arrays(*values), dtype=complex)
+    return value.reshape(rows, columns, *value.shape[1:])
+
+
 #: _in_pieces
 def _in_pieces(tests, pieces, arguments, unit):
     """Return the value of the piece that serves, element by element.
