@@ -3,7 +3,8 @@
 Input: records, and what a fit to their frequency responses gave. Output: the fit to their samples.
 
 An output is the input, held or joined by lines, through the response of the machine to one sample, and an
-offset, and a state to begin with if that is open. Noise is whitened by a regression that its residual gives.
+offset, and a drift and a state to begin with where the criterion asks for them. Noise is whitened by a
+regression that its residual gives.
 """
 
 from __future__ import annotations
@@ -40,6 +41,7 @@ from symflex.errors import Diagnostic, FitError
 OTHER_SIGN: Final = "with the other sign the data agree far better with the specification"
 NAMED_TWINS = 4
 COLOURED: Final = 2  # rounds in which the noise of records is coloured anew
+SIGN: Final = 0.25  # share of squares below which data of the other sign agree far better
 MOST_LAGS: Final = 40  # lags of the correlation between what is left of a record and its input
 
 
@@ -53,6 +55,7 @@ class _Record:
     begins: str  # a key of BEGINNINGS
     whitening: Real  # coefficients of the regression that whitens the noise
     deviation: float  # of what that leaves
+    drifts: bool = True  # whether the output drifts at a constant rate
 
     @property
     def kept(self) -> npt.NDArray[np.bool_]:
@@ -70,8 +73,9 @@ class _Record:
         )
 
     def disturbance(self, pulse: PulseResponse) -> Real:
-        """Return the columns of an offset, and of a state to begin with if that is open."""
-        offset = np.ones((self.samples.output.size, 1))
+        """Return the columns of an offset, a drift over the record, and a state to begin with, if open."""
+        time = np.linspace(-0.5, 0.5, self.samples.output.size)
+        offset = np.column_stack((np.ones_like(time), time)[: 1 + self.drifts])
         free = pulse.free if self.begins == "free" else pulse.free[:, :0]
         scale = np.maximum(np.abs(free).max(axis=0, initial=0.0), np.finfo(float).tiny)
         return np.concatenate((offset, free / scale), axis=1)
@@ -130,12 +134,19 @@ class _RecordResidual(ParameterResidual):
         output = fftconvolve(driven[:, np.newaxis], both, axes=0)[: driven.size]
         return output[:, 0], output[:, 1:], record.disturbance(pulse)
 
-    def left(self, record: _Record, theta: Real) -> Real:
-        """Return what the model and the best disturbances leave of the samples; not whitened."""
+    def left(self, record: _Record, theta: Real) -> tuple[Real, float]:
+        """Return what the model and the best disturbances leave, not whitened, and the drift."""
         output, _, columns = self.model(record, theta)
         rest = record.samples.output - output
         solved = np.linalg.lstsq(record.whitened(columns), record.whitened(rest), rcond=None)[0]
-        return np.asarray(rest - columns @ solved, np.float64)
+        return np.asarray(rest - columns @ solved, np.float64), float(solved[1]) if record.drifts else 0.0
+
+    def score(self, x: Real) -> float:
+        """Return the criterion (BIC) of a point."""
+        theta = self.machine.theta(x)
+        terms = sum(one.disturbance(self.pulse(one, theta)).shape[1] for one in self.records)
+        count = sum(int(one.kept.sum()) for one in self.records)
+        return float(count * np.log(max(self.cost(x), np.finfo(float).tiny) / count) + terms * np.log(count))
 
     def parts(self, theta: Real, scales: Real) -> Iterator[tuple[Values, Values]]:
         """Yield residuals and derivatives of each record."""
@@ -168,15 +179,14 @@ def fit_records(measured: Sequence[MeasuredResponse], begun: ParameterFit, hold:
             low, high = machine.limits
             points = [rest.descend(np.clip(start, low, high), ROUGH_STEPS, ROUGH) for start in starts]
             x = min(points, key=rest.cost)
-            terms = sum(
-                record.disturbance(rest.pulse(record, machine.theta(x))).shape[1] for record in records
-            )
-            count = sum(record.kept.sum() for record in records)
-            score = count * np.log(max(rest.cost(x), np.finfo(float).tiny) / count) + terms * np.log(count)
-            if chosen is None or score < chosen[0]:
-                chosen = score, x, records
+            if chosen is None or rest.score(x) < chosen[0]:
+                chosen = rest.score(x), x, records
     assert chosen is not None  # there are beginnings
-    _, x, records = chosen
+    score, x, records = chosen
+    steady = [replace(record, drifts=False) for record in records]
+    other = _RecordResidual(machine, steady).descend(x, ROUGH_STEPS, ROUGH)
+    if _RecordResidual(machine, steady).score(other) < score:
+        x, records = other, steady
     for record in records:
         if not np.isfinite(_RecordResidual(machine, records).pulse(record, machine.theta(x)).values).all():
             name = machine.functions[record.response].name
@@ -186,7 +196,7 @@ def fit_records(measured: Sequence[MeasuredResponse], begun: ParameterFit, hold:
         x = _best_of_random(_RecordResidual(machine, records), x, starts)
     for _ in range(COLOURED):
         rest = _RecordResidual(machine, records)
-        left = [rest.left(record, machine.theta(x)) for record in records]
+        left = [rest.left(record, machine.theta(x))[0] for record in records]
         records = [_coloured(record, values) for record, values in zip(records, left, strict=True)]
         x = _RecordResidual(machine, records).descend(x)
     return _in_time(measured, begun, records, x)
@@ -242,13 +252,15 @@ def _in_time(
     shown = shown_at(problem, machine, refined_at(problem, machine, x), theta)
     words, poor, warnings = [], [], []
     for record in records:
-        left, output = rest.left(record, theta), record.samples.output
+        (left, drift), output = rest.left(record, theta), record.samples.output
         share = float(np.std(left) / np.std(output)) if np.std(output) else 0.0
         held = "joined by lines" if record.is_joined else "held between samples"
+        length = record.samples.step_s * (output.size - 1)
+        drifting = f"it drifts by {drift / length:.3g} per second; " if record.drifts else ""
         noise = "white noise" if record.whitening.size == 1 else f"noise of order {record.whitening.size - 1}"
         words.append(
             f"in time: {output.size} samples, {record.samples.step_s:.6g} s apart; the input is {held}; "
-            f"{BEGINNINGS[record.begins]}; residual {100 * share:.3g} % rms, {noise}"
+            f"{BEGINNINGS[record.begins]}; {drifting}residual {100 * share:.3g} % rms, {noise}"
         )
         name = measured[record.response].name
         if _follows(record, record.whitened(left), rank):
@@ -266,9 +278,20 @@ def _in_time(
         are_exact_twins=are_exact,
         in_time=tuple(words),
     )
-    kept = [reason for reason in begun.poor if reason == OTHER_SIGN]
     poor += contradicted(found)
-    return replace(found, poor=(*kept, *poor), warnings=(*warnings, *warnings_of(found)))
+    if poor and _is_negated(machine, records, x):
+        poor = [OTHER_SIGN, *poor]
+    return replace(found, poor=tuple(poor), warnings=(*warnings, *warnings_of(found)))
+
+
+def _is_negated(machine: Machine, records: Sequence[_Record], x: Real) -> bool:
+    """Return whether records of the other sign leave half the residual, or less, without whitening."""
+    plain = [replace(one, whitening=np.ones(1), deviation=1.0) for one in records]
+    negated = [replace(one, samples=replace(one.samples, output=-one.samples.output)) for one in plain]
+    rest, other = _RecordResidual(machine, plain), _RecordResidual(machine, negated)
+    starts = (x, np.zeros(x.size))
+    least = min(other.cost(other.descend(start, ROUGH_STEPS, ROUGH)) for start in starts)
+    return least < SIGN * rest.cost(rest.descend(x, ROUGH_STEPS, ROUGH))
 
 
 def _follows(record: _Record, left: Real, rank: int) -> bool:

@@ -27,6 +27,38 @@ def test_a_record_in_time_gives_the_parameters_of_a_motor_that_starts(fitted):
     assert not found.poor
 
 
+def of_motor(source, n=600, h=2e-4):
+    """A voltage that switches, and the speed of the motor that it drives, with 1 % of noise."""
+    system = np.zeros((3, 3))
+    system[:2] = [[-1.2 / 1e-3, -0.05 / 1e-3, 1 / 1e-3], [0.05 / 3e-5, -2e-4 / 3e-5, 0]]
+    ahead = expm(system * h)
+    u, x, y = np.repeat(source.choice([0.0, 12.0], n // 20), 20), np.zeros(2), np.zeros(n)
+    for k in range(n):
+        y[k] = x[1]
+        x = ahead[:2, :2] @ x + ahead[:2, 2] * u[k]
+    return h, u, y + 0.01 * y.std() * source.standard_normal(n)
+
+
+def test_a_drift_is_fitted_and_said(fitted):
+    h, u, y = of_motor(np.random.default_rng(12))
+    f = np.geomspace(20, 2000, 80)
+    drift = 40.0 * y.std() * h * np.arange(y.size)  # per second, 40 deviations of the output
+    found = fitted("R,k,J", motor(f), MOTOR, "w/u", f, samples=(Samples(h, y + drift, u),))
+    assert np.max(np.abs(found.theta - [1.2, 0.05, 3e-5]) / found.errors) < 3.5
+    assert np.max(found.errors / found.theta) < 0.02
+    assert f"it drifts by {40 * y.std():.2g}"[:16] in found.in_time[0]
+    still = fitted("R,k,J", motor(f), MOTOR, "w/u", f, samples=(Samples(h, y, u),))
+    assert "drifts" not in still.in_time[0]
+
+
+def test_a_record_of_the_other_sign_is_said(fitted):
+    h, u, y = of_motor(np.random.default_rng(13))
+    f = np.geomspace(20, 2000, 80)
+    # The response alone has the right sign: the samples are those that are wrong.
+    found = fitted("R,k,J", motor(f), MOTOR, "w/u", f, samples=(Samples(h, -y, u),))
+    assert found.poor[0] == "with the other sign the data agree far better with the specification"
+
+
 def test_a_record_may_begin_in_motion_with_an_offset(fitted):
     # an offset of the sensor, and a lag that was moving before: T y' + y = K u, solved between samples
     text = "symflex = 1\nparameters.K = 1\nparameters.T = 3\ninputs.u = {{}}\noutputs.y = 'K*u/(T*s + 1)'"
