@@ -488,7 +488,8 @@ def _what(fit: ResonanceFit, r: int) -> str:
 def _data_line(fit: ResonanceFit, r: int) -> str:
     measured = fit.measured[r]
     if (record := fit.record) is not None:
-        parts = [f"data: {record.samples[r]} samples of {record.step_s:.6g} s, fitted in time"]
+        several = f"{len(measured.samples)} records of " if len(measured.samples) > 1 else ""
+        parts = [f"data: {several}{record.samples[r]} samples of {record.step_s:.6g} s, fitted in time"]
         if record.is_driven:
             parts.append(f"the input is {HOLDS[record.hold]} between samples")
             parts += ["from rest"] * record.is_at_rest

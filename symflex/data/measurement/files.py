@@ -21,7 +21,7 @@ from symflex.data.measurement.comma_separated import read_columns, with_axis
 from symflex.data.measurement.estimate import Estimate, responses_of
 from symflex.data.measurement.input_signal import ARRAYS
 from symflex.data.measurement.measured_response import MAX_BYTES, MOST_AVERAGES, MeasuredResponse, window_of
-from symflex.data.measurement.record import TimeRecord, joined, read_record
+from symflex.data.measurement.record import TimeRecord, joined, read_all_records, read_record
 from symflex.data.measurement.spice_raw import is_raw, table_of_raw
 from symflex.data.measurement.touchstone import read_touchstone
 from symflex.data.measurement.universal_file import (
@@ -116,9 +116,10 @@ def read_measurement(
     if axis is not None:
         return read_columns(name, with_axis(name, data, *axis), Path(name).stem, columns)
     if READERS.get(suffix, read_columns) in (read_columns, read_arrays, read_universal_file):
-        record = read_record(name, data, Path(name).stem, columns)
-        if record is not None:
-            return responses_of(record, estimate or Estimate())
+        records = read_all_records(name, data, Path(name).stem, columns)
+        if records:
+            how = estimate or Estimate()
+            return tuple(response for record in records for response in responses_of(record, how))
     if suffix in READERS:
         return READERS[suffix](name, data, Path(name).stem, columns)
     try:

@@ -97,6 +97,7 @@ _OF_AN_INSTRUMENT: Final = {"", "ch", "channel", "kanal", "ai", "trace", "in", "
 """What channels are called whatever they measure."""
 _FREQUENCY = re.compile(r"freq|fr\u00e9q", re.I)
 _SPEED = re.compile(r"vel|speed|gyro|rate|geschw|vitesse|drehz|angular(?!.?fr)", re.I)
+MOST_RECORDS: Final = 100  # of a file, one below the other
 _SIGNALS: Final = ("f", "omega", "w", "\u03c9", "angular")
 """Words for frequencies that signals have, too."""
 _SPECTRUM = re.compile(r"\b(?:fft|psd)\b|spectrum|spectral", re.I)
@@ -112,6 +113,14 @@ _OF_TIME = re.compile(r"(?:t|time)([/_])\s*(?:s|ms)", re.I)
 _SAID = re.compile(r"\W*units?(?:[ _]+(?:of[ _]+)?(?P<of>[^:=]+?))?\s*[:=]\s*(?P<unit>[^=]+)", re.I)
 """Comments that give the unit of a response, of one channel, or of all columns."""
 _SHAKEN = re.compile(r"acc|a[xyz]?\d*|beschl|vib|imu|point.*", re.I)  # names of what is measured in g
+
+
+class RestartError(DataError):
+    """The times of a record begin again on a line: another record follows."""
+
+    def __init__(self, diagnostic: Diagnostic, line: int) -> None:
+        super().__init__(diagnostic)
+        self.line = line  # from 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,6 +193,34 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
     if asked:
         return _asked_columns(table, first, words, interval, stem)
     return _of_table(table, first, stem, is_timed=timed is not data)
+
+
+def read_all_records(name: str, data: bytes, stem: str, asked: str = "") -> list[TimeRecord]:
+    """Return the records that a file contains, one below the other where its times begin again."""
+    found: list[TimeRecord] = []
+    rows = data
+    while True:
+        try:
+            record = read_record(name, rows, stem, asked)
+        except RestartError as error:
+            lines = rows.splitlines(keepends=True)
+            table = TextTable.of(name, _without_clock(rows))
+            first = next(i for i in range(error.line) if _is_row(table, i))
+            if (
+                min(error.line - first, len(lines) - error.line) < FEWEST_SAMPLES
+                or len(found) == MOST_RECORDS
+            ):
+                raise
+            record = read_record(name, b"".join(lines[: error.line]), stem, asked)
+            rows = b"".join((*lines[:first], *lines[error.line :]))
+            found += [record] if record is not None else []
+            continue
+        found += [record] if record is not None else []
+        break
+    if len(found) > 1:
+        said = f"the times begin again: {len(found)} records, one below the other"
+        found = [replace(one, guesses=(*one.guesses, said)) for one in found]
+    return found
 
 
 def joined(records: Sequence[TimeRecord], kinds: Sequence[str]) -> TimeRecord:
@@ -512,11 +549,15 @@ def _even(
     if not np.all(steps > 0):
         i = int(np.argmax(~(steps > 0))) + 1
         location = table.line(lines[i]) if table else None
-        hint = "one record per file; sort its lines, or leave out what was recorded before"
+        hint = "sort its lines, or leave out what was recorded before"
         if np.all(steps >= 0):
             hint = "several samples have one time: say how far they are apart, --columns -,u,y,dt=SECONDS"
         message = f"the time {times[i]:.9g} s follows {times[i - 1]:.9g} s"
-        raise DataError(Diagnostic("SF604", message, location, hint))
+        problem = Diagnostic("SF604", message, location, hint)
+        # A record that goes on from a time of its middle is out of order.
+        if table and times[i] < times[i - 1] and times[i] <= times[0] + abs(times[1] - times[0]):
+            raise RestartError(problem, lines[i])
+        raise DataError(problem)
     step = float(np.median(steps))
     even = times[0] + step * np.arange(times.size)
     mean = (times[-1] - times[0]) / (times.size - 1)

@@ -370,7 +370,7 @@ def test_records_of_one_length_are_averaged_as_sure_as_they_are(tmp_path):
     ("text", "code"),
     [
         ("time,u,y\n0,0,1\n1,0,2\n2,1,3\n", "SF605"),
-        ("time,u,y\n" + "\n".join(f"{i % 40},0,{i}" for i in range(80)), "SF604"),
+        ("time,u,y\n" + "\n".join(f"{i % 40 + i // 40 * 9},0,{i}" for i in range(80)), "SF604"),
         ("time,u,y\n" + "\n".join(f"{i},0,{i if i % 3 else 'x'}" for i in range(80)), "SF603"),
         ("time,u,y\n" + "\n".join(f"{i},0,5" for i in range(80)), "SF602"),
     ],
@@ -608,3 +608,17 @@ def test_a_response_keeps_its_unit_in_every_format(tmp_path):
         (again,) = read_measurement(path)
         assert again.unit == "m/N", ending
         assert again.values == pytest.approx(found.values, rel=1e-4), ending
+
+
+@pytest.mark.parametrize("again", ["", "time_s,u,y\n", "\n"])
+def test_records_one_below_the_other_are_several(tmp_path, again):
+    source, parts = np.random.default_rng(5), []
+    for size in (80, 80, 60):
+        u, y = source.standard_normal((2, size))
+        parts.append(
+            "".join(f"{i / 100:g},{a:.6g},{b:.6g}\n" for i, (a, b) in enumerate(zip(u, y, strict=True)))
+        )
+    (tmp_path / "several.csv").write_text("time_s,u,y\n" + again.join(parts))
+    found = read_measurement(tmp_path / "several.csv")
+    assert [one.samples[0].output.size for one in found] == [80, 80, 60]
+    assert "the times begin again: 3 records, one below the other" in found[0].guesses
