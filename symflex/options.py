@@ -507,6 +507,18 @@ class PeakOptions:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class PassivityOptions:
+    """Options of ``symflex passivity``."""
+
+    port: str | None = option(
+        None, "--port", metavar="PORT", help="Port of [ports], or node.  [default: the only one]"
+    )
+    digits: int = option(12, "--digits", least=1, most=100, **SHOWN, help="Correct significant digits.")
+    output: str | None = file_option("Figure of the real part over frequency: FILE.pdf, .png, .svg.")
+    as_json: bool = option(False, "--json", **JSON)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class ColocationOptions:
     """Options of ``symflex colocation``. Python gives degrees, decibels and Hz."""
 
@@ -560,6 +572,9 @@ class PlotOptions:
     )
     verdict: bool = option(False, "--verdict", help="Write above the figure whether the system is stable.")
     spread: Stated | None = option(None, "--spread", **SPREAD)
+    port: str | None = option(
+        None, "--port", metavar="PORT", help="Port or node of a figure of passivity.  [default: the only one]"
+    )
     at: Sequence[Stated] = option(
         (), "--at", multiple=True, metavar="F", help="Frequency of a deflection: 30Hz; may be repeated."
     )

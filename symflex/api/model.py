@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from symflex.api.transfer_matrix import TransferMatrix
     from symflex.codegen.export import Exporter
     from symflex.contact.coupled import CoupledStability
+    from symflex.contact.passivity import PortPassivity
     from symflex.figures import AxesGiven
     from symflex.letters.routh import Conditions
     from symflex.loops import DynamicColocation
@@ -496,6 +497,61 @@ class Model:
                 return Stability(stability(self.resolved, given, values))
             proved = stability_over(self.resolved, given, values)
             return proved if isinstance(proved, StabilityChart) else Stability(proved)
+
+    def passivity(self, port: str | None = None, *, digits: int = 12, **values: Number) -> PortPassivity:
+        """Return whether the machine is passive at a port, proved, and if not where, with repairs.
+
+        Parameters
+        ----------
+        port : str, optional
+            A port of ``[ports]``, or a node; by default the only port.
+        digits : int
+            Correct significant digits.
+        **values : number or str
+            In place of declared values.
+
+        Returns
+        -------
+        PortPassivity
+            ``passive`` (``None`` where it is not decided), ``active`` bands, ``least`` real part, ``repair``
+            and ``example``.
+
+        Raises
+        ------
+        UsageError
+            SF210 no such port, SF218 a node that does not move.
+
+        Examples
+        --------
+        A proportional controller with a first-order lag: ``Re Z = b - K*tau/(1 + (omega*tau)^2)``.
+
+        >>> hand = {"body": {"type": "mass", "at": "x", "m": "1 kg"},
+        ...         "friction": {"type": "damper", "between": ["x", "ground"], "b": "1 N*s/m"},
+        ...         "f": {"type": "force_source", "at": "x", "f": "-K/(tau*s + 1)*x"}}
+        >>> model = Model(parameters={"K": "20.5 N/m", "tau": "50 ms"}, elements=hand,
+        ...               inputs={"F": {"force": "x"}}, outputs={"X": "x"}, ports={"tip": {"at": "x"}})
+        >>> print(model.passivity("tip", digits=6))
+        port tip, v_tip/f_tip [m/(N*s)]   ACTIVE, proved
+          real part negative from 0 Hz to 0.503292 Hz
+          least real part -0.000299969, at 0.41187 Hz
+        <BLANKLINE>
+        what makes it passive
+          a damper in parallel: b at least 0.0250000 N*s/m (damper b = 0.02501 N*s/m
+            is enough)
+          a damper in series: b at most 3333.68 N*s/m (damper b = 3333 N*s/m is
+            enough)
+          a spring or a mass alone leaves the sign of the real part as it is
+        <BLANKLINE>
+        what it is unstable with
+          mass m = 1.1 kg
+          pole at 0.000264397 + 3.08782 j rad/s, 0.491442 Hz
+        >>> model.passivity("tip", K="20 N/m").passive
+        True
+        """
+        from symflex.contact.passivity import find_passivity  # imports numpy
+        from symflex.loops.over import with_values
+
+        return find_passivity(with_values(self.resolved, values), port, checked_digits(digits))
 
     def contact(
         self,

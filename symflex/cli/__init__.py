@@ -29,6 +29,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "stability": ("analyses", "Print the values of a gain, or any parameter, for which a model is stable."),
     "contact": ("analyses", "Print whether a model is stable with what touches it."),
     "peak": ("respond", "Print the largest magnitude over all frequencies."),
+    "passivity": ("passivity", "Print whether a machine is passive where it is touched."),
     "colocation": ("analyses", "Print the frequency up to which two outputs move together."),
     "draw": ("plot", "Draw the model as a textbook would."),
     "plot": ("plot", "Draw a Bode plot, a pole-zero plot, mode shapes, a root locus or a Nyquist plot."),
@@ -49,7 +50,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
 GROUPS = {  # how the help lists them
     "Begin": "new examples elements units schema lsp",
     "Model": "check derive draw",
-    "Analyse": "roots rational respond shape sweep stability contact peak colocation",
+    "Analyse": "roots rational respond shape sweep stability passivity contact peak colocation",
     "Draw and export": "plot live export report",
     "Papers and measurements": "audit referee fit measure",
 }
@@ -60,6 +61,7 @@ MEANT = {  # what one command is called elsewhere, and what to write here
     **dict.fromkeys(("simulate", "ramp", "response", "time"), "respond SPEC"),
     **dict.fromkeys(("norm", "hinf", "hinfnorm", "h2"), "peak SPEC"),
     **dict.fromkeys(("margin", "margins", "stable", "gain"), "stability SPEC --gain K"),
+    **dict.fromkeys(("passive", "impedance", "admittance"), "passivity SPEC --port PORT"),
     **dict.fromkeys(("tf", "formula", "print", "show", "explain"), "derive SPEC"),
     **dict.fromkeys(("latex", "tex", "numpy", "c", "matlab", "python"), "export SPEC --to TARGET"),
     **dict.fromkeys(("slider", "sliders", "interactive", "html"), "live SPEC"),

@@ -65,6 +65,9 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     'symflex plot sweep FILE' draws a .nc or .npz file of 'symflex sweep -o': modes over one parameter and
     their loci, or medians and the range of 90 % of the points.
 
+    passivity --port PORT draws the real part of the driving-point function of a port or node, active bands
+    shaded, as 'symflex passivity' proves them.
+
     poles_zeros --spread shades where roots lie for all combinations of values, as 'symflex roots' proves it.
 
     --band sets the frequencies of curves, and which modes are drawn. Figures in the s plane
@@ -133,13 +136,20 @@ def plot(spec: Specification, given: PlotOptions) -> int:
         pairs = figure.of if figure and figure.of and not given.tfs else pipeline.pick_pairs(model, given.tfs)
         if drawn == "modes":
             pairs = pairs[:1]  # all functions of a model have the same modes, seen or hidden
-        bounds = pipeline.derive_for_roots(model, pairs)
+        bounds = _at_port(model, given) if drawn == "passivity" else pipeline.derive_for_roots(model, pairs)
         if not given.tfs and not figure:
             bounds = _without_zeros(bounds)
         drawing = look(bounds, spread=given.spread, model=model)
     save(drawing, path, font=font)
     note(f"wrote {path}")
     return 0
+
+
+def _at_port(model: Model, given: PlotOptions) -> tuple[AnyBoundFunction, ...]:
+    """Return the function that a figure of passivity draws."""
+    from symflex.contact.passivity import driving_function
+
+    return (driving_function(model, given.port),)
 
 
 def _without_zeros(bounds: tuple[AnyBoundFunction, ...]) -> tuple[AnyBoundFunction, ...]:

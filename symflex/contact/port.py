@@ -21,7 +21,16 @@ from itertools import chain, count
 from symflex.algebra import LAPLACE
 from symflex.expressions import Attribute, Expression, Name, negative, number, product_of, sum_of
 from symflex.library.elements import ELEMENTS, THROUGH_NAME
-from symflex.model import ContactPort, Input, Model, NodeReference, Output, PlacedElement, scope_of
+from symflex.model import (
+    ContactPort,
+    Input,
+    Model,
+    NetworkNode,
+    NodeReference,
+    Output,
+    PlacedElement,
+    scope_of,
+)
 from symflex.model.model import INPUT_KINDS, PORT_PAIRS
 from symflex.model.network import variable_of
 from symflex.quantities import unit_of
@@ -81,6 +90,24 @@ def with_branch(
         tuple({**given, **values}.items()),
     )
     return replace(model, elements=(*model.elements, use))
+
+
+def with_hanging_mass(
+    model: Model,
+    port: ContactPort,
+    spring: tuple[str, Mapping[str, Expression]],
+    mass: tuple[str, Mapping[str, Expression]],
+) -> Model:
+    """Return a model with a spring at the first node of a port, and a mass at its other end.
+
+    Each is a type with its values; those of another domain are what is like them there.
+    """
+    end = _free("touched_end", _taken(model))
+    domain = port.domain
+    model = replace(model, nodes=(*model.nodes, NetworkNode(end, domain)))
+    at_end = ContactPort(end, (NodeReference(end),), domain)
+    between = replace(port, nodes=(port.nodes[0], NodeReference(end)))
+    return with_branch(with_branch(model, between, *spring, "touched"), at_end, *mass, "touched_mass")
 
 
 def _across(model: Model, port: ContactPort) -> Expression:

@@ -46,6 +46,7 @@ FIGURES: dict[str, Drawing] = {
     "modes": _later("modes", "draw_modes"),
     "nichols": _later("nichols", "draw_nichols"),
     "nyquist": _later("loops", "draw_nyquist"),
+    "passivity": _later("passivity", "draw_passivity"),
     "poles_zeros": _later("poles_zeros", "draw_poles_zeros"),
     "step": partial(_later("in_time", "draw_responses"), "step"),
 }

@@ -10,7 +10,7 @@ Input: a section of a specification, or the text of ``--port``, and the model. O
 
 from __future__ import annotations
 
-from symflex.errors import Span, Text, UsageError, nearest
+from symflex.errors import Span, Text, UsageError, nearest, refused
 from symflex.model.model import INPUT_KINDS, PORT_PAIRS, ContactPort, Model, NetworkNode, NodeReference
 from symflex.model.network import domain_of, read_reference, variable_of
 from symflex.model.reading import Reader
@@ -26,8 +26,16 @@ def read_ports(reader: Reader, section: TableValue | None, model: Model) -> tupl
     return reader.entries(section, "a port", lambda entry: _read(reader, entry, model))
 
 
-def port_named(model: Model, name: str) -> ContactPort:
-    """Return a declared port, or the one at a node; UsageError where there is neither."""
+def port_named(model: Model, name: str | None) -> ContactPort:
+    """Return a declared port, or the one at a node; without a name the only one that is declared.
+
+    UsageError: SF902 where none is named and one alone is not declared, SF2xx for what is no place to touch.
+    """
+    if name is None:
+        if len(model.ports) == 1:
+            return model.ports[0]
+        known = ", ".join(p.name for p in model.ports) or "none is declared in [ports]"
+        raise refused("name the port with --port", f"ports: {known}; a node is one, too")
     if declared := next((p for p in model.ports if p.name == name), None):
         return declared
     text = Text.alone("--port", name)

@@ -137,6 +137,27 @@ class FunctionFarOut:
             above, below = ({e: own for e, own in side.items() if own} for side in real)
             return above, below
 
+    def angle_on_axis(self, radius: float) -> tuple[arb, arb] | None:
+        """Return the angle of H on the axis from a radius on, and how far it may be off [rad]; else None.
+
+        That is known where one term of each factor outweighs the others, and their exponentials cancel.
+        """
+        with precision(BITS):
+            lead, off, power, grown = acb(self.unit), arb(0), Fraction(0), Exponent()
+            for function, exponent in self.factors:
+                powers = function.powers(radius)
+                if powers is None:
+                    return None
+                own = _dominant(powers[0], _turned(powers[1], self.sectors - 1), arb(radius))
+                if own is None:
+                    return None
+                lead *= own.lead**exponent
+                off += abs(exponent) * (1 - own.least / abs(own.lead).upper()).asin()
+                power += own.power * exponent
+                grown = _sum((grown, 1), (own.exponent, exponent))
+            turn = acb(0, arb.pi() / 2 * ball(power) / function.sheets).exp()
+            return ((lead * turn).arg(), off) if not grown and lead.is_finite() else None
+
     def size(self, radius: float) -> SizeFarOut | None:
         """Return the size from a radius [rad/s] on, where there is no pole; None where that is not known."""
         with precision(BITS):

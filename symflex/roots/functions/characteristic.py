@@ -21,6 +21,8 @@ from symflex.roots.functions.exponential_values import ExponentialValues, Place,
 from symflex.roots.functions.kernel_function import KernelFactors
 from symflex.transfer.enclose_kernels import KernelValues
 
+SERIES = 9  # more terms than any power series at a place has
+
 
 @dataclass(frozen=True, eq=False)
 class CharacteristicValues:
@@ -50,3 +52,7 @@ class CharacteristicValues:
         """Return value and slope of a polynomial at a place, divided by an exponential."""
         value = self.values.value(number, place, less)
         return at_centre(value), value[1] if isinstance(value, acb_series) else acb(0)
+
+    def series(self, numbers: Sequence[int], place: Place, less: Exponent) -> list[acb_series]:
+        """Return polynomials at a place of a power series in s, divided by an exponential."""
+        return [acb_series([0], SERIES) + self.values.value(number, place, less) for number in numbers]

@@ -1,0 +1,129 @@
+"""The smallest passive elements that make a machine passive where it is touched.
+
+Input: a machine that is not passive at a port, and its driving-point function Y. Output: a :class:`Repair`.
+
+A damper b to ground at the port makes ``Z + b`` of the impedance Z = 1/Y: the least b is ``-min Re Z``, if
+no pole is left in the right half-plane then. A damper in series, between the machine and what it touches,
+makes ``Y + 1/b``: the largest b is ``-1/min Re Y``, and the poles stay where they are. A spring or a mass in
+parallel leaves Re Z as it is, in series Re Y: neither repairs what is negative on the axis.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from flint import arb
+
+from symflex.balls import precision
+from symflex.contact.environment import Put, put_at, touched
+from symflex.contact.real_part import RealPart, least_part
+from symflex.model import ContactPort, Model
+from symflex.roots.root import figure, real_json
+
+if TYPE_CHECKING:
+    from symflex.transfer import BoundTransferFunction
+
+BITS = 160
+STORES = "a spring or a mass alone leaves the sign of the real part as it is"
+ZEROS = "no damper in parallel: with any that is enough on the axis, poles stay in the right half-plane"
+NO_BOUND = "no damper in {}: the real part falls without end"
+UNSTABLE = "no damper in series: it leaves the poles where they are"
+NOT_FOUND = "no damper in parallel is proved to be enough"
+UNKNOWN = "no damper in series is proved to be enough, as the real part is not known at all frequencies"
+STEPS = (1.0, 1.01, 1.2, 2.0, 10.0)  # times the least damper that is needed, up to one that is enough
+Check = Callable[[Model], tuple[bool, bool]]
+
+
+@dataclass(frozen=True)
+class Repair:
+    """What makes a machine passive."""
+
+    parallel: (
+        tuple[arb, Put] | None
+    )  # the smallest conductance of a damper in parallel, and one that is enough
+    series: tuple[arb, Put] | None  # the largest conductance of one in series
+    reasons: tuple[str, ...]  # why what is missing is not there
+
+    def lines(self, digits: int) -> list[str]:
+        """Return it for people."""
+        found = [("in parallel", "at least", self.parallel), ("in series", "at most", self.series)]
+        lines = []
+        for how, word, each in found:
+            if each is not None:
+                limit, put = each
+                name = put.type_name.replace("_", " ")
+                lines.append(f"a {name} {how}: {_value(put, limit, word, digits)} ({put.text} is enough)")
+        return [*lines, *self.reasons]
+
+    def to_json_dict(self, digits: int) -> dict[str, object]:
+        """Return it as JSON data."""
+        data: dict[str, object] = {}
+        for how, each in (("parallel", self.parallel), ("series", self.series)):
+            if each is not None:
+                limit, put = each
+                data[how] = {
+                    "type": put.type_name,
+                    "limit": real_json(_own(put, limit), digits),
+                    "unit": put.unit,
+                    put.parameter: float(put.value),
+                }
+        return data | {"reasons": list(self.reasons)}
+
+
+def _own(put: Put, conductance: arb) -> arb:
+    with precision(BITS):
+        return 1 / conductance if put.parameter == "R" else conductance
+
+
+def _value(put: Put, conductance: arb, word: str, digits: int) -> str:
+    if put.parameter == "R":
+        word = {"at least": "at most", "at most": "at least"}[word]
+    return f"{put.parameter} {word} {figure(_own(put, conductance), digits)} {put.unit}"
+
+
+def repairs(
+    model: Model,
+    port: ContactPort,
+    bound: BoundTransferFunction,
+    real: RealPart,
+    has_faults: bool,
+    check: Check,
+) -> Repair:
+    """Return the smallest dampers that make a machine passive.
+
+    ``check`` tells of a model whether it is passive, and whether it is proved unstable alone.
+    """
+    reasons = [STORES] if real.active else []
+    turned = replace(bound, ratio=1 / bound.ratio, parts=bound.parts and bound.parts[::-1])
+    parallel = series = None
+    least = least_part(turned, real.active, 12)
+    if least is not None and not least.value.is_finite():
+        reasons.append(NO_BOUND.format("parallel"))
+    elif least is not None and least.value < 0:
+        with precision(BITS):
+            limit = -least.value
+        enough = (put_at(port, "dissipative", float(limit.upper()) * step, is_up=True) for step in STEPS)
+        for put in enough:
+            is_passive, is_unstable = check(touched(model, port, [put]))
+            if is_passive:
+                parallel = limit, put
+                break
+            if is_unstable and not real.reasons:
+                reasons.append(ZEROS)
+                break
+        else:
+            reasons.append(NOT_FOUND)
+    elif least is None and real.active:
+        reasons.append(NOT_FOUND)
+    least = least_part(bound, real.active, 12)
+    if has_faults or real.reasons:
+        reasons.append(UNSTABLE if has_faults else UNKNOWN)
+    elif least is not None and not least.value.is_finite():
+        reasons.append(NO_BOUND.format("series"))
+    elif least is not None and least.value < 0:
+        with precision(BITS):
+            limit = -1 / least.value
+        series = limit, put_at(port, "dissipative", float(limit.lower()), is_up=False)
+    return Repair(parallel, series, tuple(reasons))

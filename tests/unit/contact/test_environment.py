@@ -1,0 +1,55 @@
+"""Examples of environments with which an active machine is unstable."""
+
+import numpy as np
+import pytest
+
+from symflex.contact.environment import LAWS, put_at
+from symflex.contact.passivity import find_passivity
+from symflex.library.elements import ELEMENTS
+from symflex.model.ports import port_named
+from tests.unit.contact.machines import DELAYED, LAGGED, machine
+
+
+def test_every_element_has_its_parameter():
+    for laws in LAWS.values():
+        for type_name, parameter, _ in laws.values():
+            assert parameter in {p.name for p in ELEMENTS[type_name].parameters}
+
+
+def test_values_are_rounded_to_the_side_that_is_asked_for():
+    port = port_named(machine(), "tip")
+    assert put_at(port, "dissipative", 3.0778889, is_up=True).value == pytest.approx(3.078)
+    assert put_at(port, "dissipative", 3.0778889, is_up=False).value == pytest.approx(3.077)
+
+
+def test_a_mass_makes_the_lagged_wall_unstable_with_the_root_of_its_polynomial():
+    # tau (m + M) s^3 + ((m + M) + b tau) s^2 + b s + K = 0.
+    example = find_passivity(machine(), "tip").example
+    (put,) = example.elements
+    assert put.type_name == "mass"
+    m = 1 + float(put.value)
+    roots = np.roots([0.05 * m, m + 0.05, 1, 20.5])
+    (right,) = [z for z in roots if z.real > 0 and z.imag > 0]
+    assert complex(example.root) == pytest.approx(right, rel=1e-9)
+
+
+def test_a_delayed_wall_is_unstable_with_a_root_of_its_own_equation():
+    stiff = DELAYED.replace(
+        "motor =", 'spring = { type = "spring", between = ["x", "ground"], k = 500 }\nmotor ='
+    )
+    example = find_passivity(machine(stiff), "tip").example
+    (put,) = example.elements
+    s = complex(example.root)
+    m, k = (1 + float(put.value), 0.0) if put.type_name == "mass" else (1.0, float(put.value))
+    assert s.real > 0
+    assert abs(m * s**2 + s + 500 + k + 20.5 * np.exp(-s * 0.05)) < 1e-9 * abs(m * s**2)
+
+
+def test_what_is_active_at_all_frequencies_is_unstable_with_a_hanging_mass_or_alone():
+    text = LAGGED.replace("-K/(tau*s + 1)*x", "3*s*x*B").replace(
+        "[parameters]", '[parameters]\nB = "1 N*s/m"'
+    )
+    text = text.replace(
+        "[inputs]", 'k = { type = "spring", between = ["x", "ground"], k = "1 N/m" }\n[inputs]'
+    )
+    assert find_passivity(machine(text), "tip").example.elements == ()
