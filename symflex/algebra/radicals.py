@@ -463,7 +463,7 @@ class Radicals:
         is_imaginary = any(square.is_constant and square.unit < 0 for square in self.squares.values())
         for _ in range(TRIES):
             spend()
-            prime = 4 * random.randrange(2**58, 2**59) + (1 if is_imaginary else 3)
+            prime = 4 * random.randrange((PRIME + 1) // 8, (PRIME + 1) // 4) + (1 if is_imaginary else 3)
             if fmpz(prime).is_prime():
                 values = dict(zip(self.ring.names, self._numbers(random, prime), strict=True))
                 if self._satisfies(values, prime):

@@ -17,7 +17,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import factorial, inf, isfinite, log2, prod
 
-import numpy as np
 from flint import acb, acb_poly, arb
 
 from symflex.along.system import MinorsAlong, Place, SingularBeginning, VaryingSystem, sequence_of
@@ -136,6 +135,8 @@ def growth_of(system: MinorsAlong, legs: Sequence[Leg], reach: arb) -> Growth:
 
 def least_growth(system: VaryingSystem, order: int, largest: arb) -> float:
     """Return by about how many bits minors of so many rows grow at least, of all u of a size."""
+    import numpy as np  # what is only checked and printed needs none of it
+
     start, end = system.ends()
     way, totals = float((end - start).mid()), [0.0] * len(DIRECTIONS)
     for k in range(SAMPLES):

@@ -19,6 +19,8 @@ from symflex.errors.diagnostic import printable
 
 P = ParamSpec("P")
 SMALLER = "ask for fewer transfer functions, roots or points, or give parameters numbers in place of symbols"
+LIBRARIES = ("numpy", "scipy", "matplotlib", "sympy", "mpmath", "pyuff")
+"""What many commands need and some do not, such as those that run in a browser."""
 PICTURES = (".pdf", ".pgf", ".svg", ".png")
 LAYOUT = "\n\t" + "".join(map(chr, (0xA0, 0x1680, *range(0x2000, 0x200B), 0x202F, 0x205F, 0x3000)))
 """Ends of lines and blanks, which Python does not count as printable and terminals show."""
@@ -37,6 +39,13 @@ def reporting(command: Callable[P, int | None]) -> Callable[P, int]:
         except MemoryError:
             show_error(SymflexError(Diagnostic("SF504", "out of memory", None, SMALLER)))
             return 5
+        except ModuleNotFoundError as error:
+            library = (error.name or "").partition(".")[0]
+            if library not in LIBRARIES:
+                raise
+            said = f"this needs the library {library}, which is not installed here"
+            show_error(UsageError(Diagnostic("SF902", said, None, f"pip install {library}")))
+            return UsageError.exit_code
         except BrokenPipeError:
             # The reader of a pipe went away; nothing is left to tell it, neither now nor at exit.
             silence(sys.stdout)
