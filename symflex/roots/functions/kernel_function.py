@@ -27,6 +27,7 @@ from symflex.errors import Diagnostic, ModelError, UncertifiedError
 from symflex.model.model import IMAGINARY
 from symflex.roots.functions.entire import FactorBall, Sample
 from symflex.roots.functions.exponential_values import ExponentialValues, Place, Summed, exponential_sums
+from symflex.roots.functions.reversal import is_reversed
 from symflex.roots.problem import is_complex
 from symflex.transfer import BoundTransferFunction
 from symflex.transfer.enclose_kernels import KernelValues
@@ -42,7 +43,9 @@ BRANCHES = (1, 2, 4)  # powers in which a wavenumber's branch may cease to matte
 SINGLE: Final = {"wave": 2, "bending": 4}  # dispersions of one wavenumber, and how many branches it has
 TWINS: Final = {"cosh": "cos", "cos": "cosh", "sinh": "sin", "sin": "sinh"}
 # What is known of a function whatever the numbers are.
-FORM = frozenset(("cancels", "exponentials", "is_central", "is_even", "is_mirrored", "is_real"))
+FORM = frozenset(
+    ("cancels", "exponentials", "is_central", "is_even", "is_mirrored", "is_real", "is_real_on_axis")
+)
 MODAL_WORK = 0.15  # what sums over characteristic roots cost, in terms, over the order to the fourth
 
 
@@ -80,7 +83,8 @@ class KernelFunction:
     def is_central(self) -> bool:
         """Proved: F(-s) is F(s) or -F(s), so that -s is a root if s is."""
         used = (k for k in self.bound.kernels.kernels if self.part.depends_on(k.generator))
-        return self._turns_round_with(LAPLACE) and not any(kernel.function == "exp" for kernel in used)
+        is_alike = self._turns_round_with(LAPLACE) and not any(kernel.function == "exp" for kernel in used)
+        return is_alike or (self.is_real and self.is_real_on_axis)
 
     @property
     def is_paired(self) -> bool:
@@ -94,12 +98,13 @@ class KernelFunction:
         That is so where s and j, both with another sign, leave F but for a sign.
         """
         used = (k for k in self.bound.kernels.kernels if self.part.depends_on(k.generator))
-        return self._turns_round_with(LAPLACE, IMAGINARY) and not any(k.function == "exp" for k in used)
+        is_alike = self._turns_round_with(LAPLACE, IMAGINARY) and not any(k.function == "exp" for k in used)
+        return is_alike or is_reversed(self.part, self.bound.kernels)
 
     @cached_property
     def is_mirrored(self) -> bool:
         """Proved: F(-s) is F(s) or -F(s) times an exponential, as of ``1 + exp(-2 s)``, so that roots do."""
-        return self.is_real and self._turns_round_with(LAPLACE)
+        return self.is_real and (self.is_central or self._turns_round_with(LAPLACE))
 
     @cached_property
     def is_real(self) -> bool:

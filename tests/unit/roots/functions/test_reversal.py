@@ -6,6 +6,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+import symflex
 from symflex.algebra import Factored
 from symflex.loops.over import characteristic
 from symflex.pipeline import loads
@@ -114,3 +115,18 @@ def test_what_is_odd_in_s_is_reversed_but_for_its_sign():
     s = tf.ratio.ring.context.gen(0)
     assert is_reversed(Factored(tf.ratio.ring, Fraction(1), ((s * factor, 1),)), tf.kernels)
     assert not is_reversed(Factored(tf.ratio.ring, Fraction(1), (((s + 1) * factor, 1),)), tf.kernels)
+
+
+def test_poles_of_a_belt_that_moves_are_on_the_axis_each_once():
+    model = symflex.loads(MOVING.format(odd="2*v*s", start=PINNED, end=HELD))
+    poles = model.transfer_function("Y", "M").bind(v=0.5).poles(modes=2, digits=8)
+    # Galerkin's method with sines: q'' + G q' + K q = 0.
+    k = np.arange(1, 41)
+    m, n = np.meshgrid(k, k, indexing="ij")
+    parts = np.where((m + n) % 2 == 1, m / np.where(m == n, 1, m**2 - n**2), 0)
+    gyroscopic, stiffness = 2 * 0.5 * 4 * n * parts, np.diag((k * np.pi) ** 4 - 0.25 * (k * np.pi) ** 2)
+    first_order = np.block([[np.zeros((40, 40)), np.eye(40)], [-stiffness, -gyroscopic]])
+    expected = sorted(x for x in np.linalg.eigvals(first_order).imag if x > 0)[:2]
+    assert [root.re for root in poles] == [0] * 4
+    assert all(root.on_imaginary_axis for root in poles)
+    assert sorted(root.im for root in poles if root.im > 0) == pytest.approx(expected, rel=1e-5)
