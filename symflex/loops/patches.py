@@ -22,7 +22,8 @@ from flint import acb, acb_series, arb
 
 from symflex.balls import Value, at_centre, precision, series_terms
 
-BITS = 64  # of samples and bounds
+BITS = 64  # of bounds
+FINER_BITS = (64, 256)  # of power series, which lose digits where wavenumbers nearly meet
 RATIOS = (4, 8, 16, 32, 64, 128)  # by which discs are larger on which the function is bounded
 ACCURACY = 1e-5  # relative to the function's size: narrow parts are examined without patches
 MOST_COEFFICIENTS = 500  # beyond which smaller discs take less
@@ -101,12 +102,18 @@ def patch(function: Function, centre: complex, radius: float, middle: float, hal
         count, rows, columns, error = best
         if count > MOST_COEFFICIENTS:
             return None
-        table = _expanded(function, centre, radius, rows, _circle(middle, half, columns))
-        if table is None:
-            return None
-        blur = max(float((x.real.rad() + x.imag.rad()).upper()) for row in table for x in row)
-        values = np.array([[complex(x.mid()) for x in row] for row in table]).T
-    if not np.isfinite(values).all() or not blur < inf:
+    for bits in FINER_BITS:
+        with precision(bits):
+            table = _expanded(function, centre, radius, rows, _circle(middle, half, columns))
+            if table is None:
+                return None
+            blur = max(float((x.real.rad() + x.imag.rad()).upper()) for row in table for x in row)
+        if count * blur < error:
+            break
+    else:
+        return None
+    values = np.array([[complex(x.mid()) for x in row] for row in table]).T
+    if not np.isfinite(values).all():
         return None
     coefficients = np.fft.fft(values, axis=1) / columns
     # A shift by up to 1 adds up binomials of coefficients.

@@ -43,10 +43,9 @@ from symflex.balls import (
 from symflex.budget import spend
 from symflex.expressions import names_among
 from symflex.loops.boxes import BITS, CharacteristicFunction, Ends, FirstOrder, Piece, factors_of
-from symflex.loops.patches import ROOM, ULP, Bound, Patch, patch
+from symflex.loops.patches import FINER_BITS, ROOM, ULP, Bound, Patch, patch
 from symflex.loops.stability_map import PoleCount
 from symflex.roots.functions.kernel_function import ANYWHERE, KernelFunction
-from symflex.roots.functions.reversal import is_reversed
 from symflex.roots.root import exact_fraction
 
 WAVES = 10.0  # largest argument of a kernel up to which poles are counted if no frequency is given
@@ -59,7 +58,7 @@ SPARE = 20  # bits by which pieces of the axis that are not halved are wider tha
 SHARES = (Fraction(0), Fraction(3, 8), Fraction(1, 2), Fraction(1))  # of a range, at which waves are compared
 SHORT = 64  # times as long as a part is the range, if a highest derivative vanishes in it
 SHORTER, BESIDE = 3, 4  # times as many waves as elsewhere; part of the range beside which they are looked for
-DEEPEST = 6  # halvings of the range until a patch has to serve
+DEEPEST = 7  # halvings of the range until a patch has to serve
 WIDENED = 64  # widths by which places on the axis are widened to prove that one pair meets there
 STEPS, SHARE = 40, 0.9  # of Newton's method, each of which leaves less than this share
 
@@ -214,8 +213,7 @@ class PolesUpTo:
     @cached_property
     def _are_real_on_axis(self) -> list[bool]:
         """Whether roots of each are proved to mirror each other in the axis, whatever the value."""
-        parts = self._parts[-1]
-        return [f.is_real_on_axis or is_reversed(f.part, f.bound.kernels) for f in parts]
+        return [function.is_real_on_axis for function in self._parts[-1]]
 
     def is_bare(self, ends: Ends) -> bool:
         """Tell whether a part is too near to where a wave equation loses its highest derivative.
@@ -351,7 +349,7 @@ class PolesUpTo:
         if any(names_among(c.expression, {name}) for c in tf.constants):
             return None
         middle = _middle(ends)
-        with precision(64):
+        with precision(FINER_BITS[-1]):
             kernels = replace(function.kernels(tf, ((middle, middle),)), expands_modes=True)
         polynomial, _ = self._factors[factor]
 

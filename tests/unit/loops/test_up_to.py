@@ -69,6 +69,7 @@ domain = ["0", "L"]
 equation = "EI*w'''' - (N - rho*v^2)*w'' + 2*rho*v*s*w' + rho*s^2*w = 0"
 conditions = ["w(0) = 0", "w''(0) = 0", "w(L) = 0", "EI*w''(L) = M"]
 """
+LIMP = BELT.replace("EI = 1", "EI = 0.01")
 
 
 def the_boundary(found, value, omega, change):
@@ -179,6 +180,23 @@ def test_long_series_of_modes_are_those_of_the_matrix_exponential():
         value = by_matrix.polynomial(factor, by_matrix.at(acb(2.125, 5)))
         total = sum((series[k] / acb(8) ** k for k in range(24)), acb(0))
     assert abs(complex(total) / complex(value) - 1) < 1e-14
+
+
+def test_patches_keep_their_digits_where_wavenumbers_nearly_meet():
+    # At EI = 0.01 and v = 1 series about s = 0.19 j lose more digits than 64 bits have.
+    limits = Fraction(1, 2), Fraction(2)
+    function = characteristic(loads(LIMP).resolved, ("v",), (limits,))
+    poles = PolesUpTo.of(function, limits, pi, 128)
+    made = poles._patch_on(0, poles.axis, 3, (Fraction(7, 8), Fraction(17, 16)))
+    assert made is not None and made.error < 1e-4 * abs(made.coefficients[0, 0])
+
+
+@pytest.mark.slow
+def test_a_belt_with_little_stiffness_buckles_next_to_its_wave_speed():
+    found = loads(LIMP).stability(over="v", limits=(0.875, 1.125), up_to_hz=0.5, digits=10)
+    (boundary,) = found.proved.boundaries
+    assert abs(float(boundary.gain.mid()) - sqrt(1 + 0.01 * pi**2)) < 1e-10
+    assert [i.poles.word for i in found.proved.intervals] == ["marginal", "unstable"]
 
 
 def test_up_to_a_frequency_a_chart_is_refused():
