@@ -12,11 +12,12 @@ boundary is decided but for a strip about a straight line, and halved until stri
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
+from math import pi
 from typing import Literal
 
 import numpy as np
@@ -27,6 +28,7 @@ from symflex.budget import entered_budget
 from symflex.errors import SymflexError
 from symflex.loops.boundary_curves import Point, boundary_curves
 from symflex.loops.boxes import Box, CharacteristicFunction, OpenBox
+from symflex.loops.up_to import BoxesUpTo
 from symflex.model import ExactValue, ModelParameter
 from symflex.print.notebook import Printed
 from symflex.print.text import INDENT, Passage
@@ -81,6 +83,7 @@ class StabilityChart(Printed):
     reasons: tuple[str, ...]  # what is not proved
     open: tuple[OpenBox, ...] = field(repr=False)  # boxes about boundaries
     function: CharacteristicFunction = field(repr=False)
+    radius: float | None = None  # poles were counted up to this abs(s) [rad/s]; ``None``: all of them
 
     def __repr__(self) -> str:
         return f"<StabilityChart over {', '.join(self.names)}: {100 * self.decided:.1f} % decided>"
@@ -88,6 +91,7 @@ class StabilityChart(Printed):
     def passages(self) -> list[Passage]:
         """Return what is decided, region by region."""
         status = "certified" if self.certified else "NOT CERTIFIED"
+        status += "" if self.radius is None else f" beyond {self.radius / (2 * pi):.4g} Hz"
         units, sizes = zip(*self.counted_in, strict=True)
         heads = [f"{name} [{unit}]" if unit else name for name, unit in zip(self.names, units, strict=True)]
         lines = [f"{', '.join(heads)}   {status}: {100 * self.decided:.1f} % of the area decided"]
@@ -170,6 +174,7 @@ class StabilityChart(Printed):
             "at_nominal": self.at_nominal,
             "certified": self.certified,
             "reasons": list(self.reasons),
+            "counted_up_to_rad_per_s": self.radius,
             "undecided": 1 - self.decided,
             "regions": [
                 {
@@ -237,13 +242,18 @@ def find_chart(
     nominal: Sequence[Fraction | None],
     parameters: Sequence[ModelParameter],
     resolve: float = 0.01,
+    boxes_up_to: BoxesUpTo | None = None,
+    reason: str = "",
 ) -> StabilityChart:
-    """Return where in finite ``ranges`` a model is stable, up to a share to ``resolve`` and the time."""
-    reasons: list[str] = []
-    search = _CellSearch(function, ranges)
+    """Return where in finite ``ranges`` a model is stable, up to a share to ``resolve`` and the time.
+
+    With ``boxes_up_to`` poles are counted up to a frequency, as others have no end for the reason given.
+    """
+    reasons = [] if boxes_up_to is None else [reason]
+    search = _CellSearch(boxes_up_to or function, ranges)
     with entered_budget().share(SEARCH).entered():
         found: Branching[list[OpenBox], None] = branch(
-            [[function.whole(ranges)]],
+            [[search.function.whole(ranges)]],
             search.decide,
             search.alone,
             order="breadth",
@@ -256,23 +266,32 @@ def find_chart(
     rims = {(k, x) for k, ends in enumerate(ranges) for x in ends}
     inner = (box for box in smallest if not rims & {(k, x) for k, e in enumerate(box.box) for x in e})
     ends = {box.radius for box in inner if isinstance(box.radius, str)}
-    regions_of, regions = _regions(function, free, ranges, reasons)
+    regions_of, regions = _regions(search.verdict_at, free, ranges, reasons)
+    radius = None if boxes_up_to is None else float(boxes_up_to.poles.radius)
+    # Poles that may stay on the axis have no curve there.
+    about = () if boxes_up_to else tuple(smallest)
     units, counted_in = (p.unit for p in parameters), (p.counted_in for p in parameters)
     return StabilityChart(
         function.names, tuple(units), tuple(counted_in), ranges, tuple(nominal), regions_of, regions,
-        tuple(dict.fromkeys((*reasons, *ends))), tuple(smallest), function
+        tuple(dict.fromkeys((*reasons, *ends))), about, function, radius
     )  # fmt: skip
 
 
 class _CellSearch:
     """Marks the cells of two ranges in which no pole meets the axis, box by box."""
 
-    def __init__(self, function: CharacteristicFunction, ranges: Box) -> None:
+    def __init__(self, function: CharacteristicFunction | BoxesUpTo, ranges: Box) -> None:
         self.function, self.ranges = function, ranges
         self.free: npt.NDArray[np.bool_] = np.zeros((PARTS,) * 2, dtype=bool)  # finer as boxes are halved
         self.smallest: list[OpenBox] = []  # open boxes that are not worth halving
         self._found = 0  # how many are
         self._is_bounded = False  # in some box it is known up to where poles are to be sought
+
+    def verdict_at(self, point: Sequence[Fraction]) -> StabilityVerdict:
+        """Return what holds at one point."""
+        if isinstance(self.function, BoxesUpTo):
+            return self.function.verdict_at(point)
+        return count_at(self.function, point)[0]
 
     @property
     def open_share(self) -> float:
@@ -346,7 +365,10 @@ def cells_without(box: OpenBox) -> npt.NDArray[np.bool_]:
 
 
 def _regions(
-    function: CharacteristicFunction, free: npt.NDArray[np.bool_], ranges: Box, reasons: list[str]
+    verdict_at: Callable[[Sequence[Fraction]], StabilityVerdict],
+    free: npt.NDArray[np.bool_],
+    ranges: Box,
+    reasons: list[str],
 ) -> tuple[npt.NDArray[np.int16], tuple[ChartRegion, ...]]:
     """Return the region of each cell, -1 if it is undecided, and these with the poles counted in each."""
     from scipy import ndimage  # only charts ask
@@ -365,7 +387,7 @@ def _regions(
             low + (high - low) * Fraction(2 * int(i) + 1, 2 * len(free))
             for i, (low, high) in zip(place, ranges, strict=True)
         )
-        verdict, _ = count_at(function, point)
+        verdict = verdict_at(point)
         if verdict.word == "unknown" and verdict.reason not in reasons:
             reasons.append(verdict.reason)
         regions.append(ChartRegion(verdict, point, float(sizes[label] / free.size)))

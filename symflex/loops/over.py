@@ -41,7 +41,7 @@ from symflex.loops.stability_map import (
     PoleCount,
     StabilityMap,
 )
-from symflex.loops.up_to import OpenPart, PolesUpTo
+from symflex.loops.up_to import ONE, BoxesUpTo, OpenPart, PolesUpTo, share_of_ranges
 from symflex.model import Model, ModelParameter, with_numbers
 from symflex.model.along import is_tapered
 from symflex.model.loss_factors import check_causal
@@ -87,18 +87,24 @@ def stability_over(
         exact = replace(exact, margins=Margins(gain_margins(exact)))
     if exact is not None and exact.certified:
         return exact.of_parameter
-    function = characteristic(model, names, limits, has_complex_waves=len(names) == 1)
+    function = characteristic(model, names, limits, has_complex_waves=True)
     for parameter in parameters:
         if not function.depends_on(parameter.name):
             message = f"no pole of the model depends on '{parameter.name}'"
             raise ModelError(Diagnostic("SF801", message, parameter.span, _sweep(parameter.name)))
+    end = _end_inside(function, limits)
+    is_endless = isinstance(end, str) and end != VANISHES and PolesUpTo.serves(function)
     if len(names) > 1:
+        boxes = BoxesUpTo(PolesUpTo.of(function, limits, up_to, circles=ONE)) if is_endless else None
+        if up_to is not None and boxes is None:
+            reason = str(end) if isinstance(end, str) else "all poles are counted"
+            message = f"--up-to does not apply to this chart: {reason}"
+            raise UsageError(Diagnostic("SF902", message, None, "leave it out"))
         undecided = float(share_of(given.resolve, "--resolve"))
-        return find_chart(function, limits, nominal, parameters, undecided)
+        return find_chart(function, limits, nominal, parameters, undecided, boxes, str(end))
     search = partial(find_intervals_up_to, function, limits[0], digits, parameters[0], nominal[0], up_to)
-    end = _end_inside(function, limits[0])
-    if isinstance(end, str) and end != VANISHES and PolesUpTo.serves(function):
-        return exact.of_parameter if exact is not None and exact.intervals else search(end)
+    if is_endless:
+        return exact.of_parameter if exact is not None and exact.intervals else search(str(end))
     halved = find_intervals(function, limits[0], digits, parameters[0], nominal[0])
     has_image = function.is_complex and not function.is_alone
     halved = without_image(halved, function) if has_image else halved
@@ -114,22 +120,19 @@ def _checked_names(given: StabilityOptions) -> tuple[str, ...]:
     names = tuple(given.over)
     if len(names) > 2 or len(set(names)) < len(names):  # noqa: PLR2004 (a chart has two axes)
         raise UsageError(Diagnostic("SF902", "give one or two parameters, each once: --over K --over T"))
-    if given.up_to is not None and len(names) > 1:
-        hint = "ask for one parameter: --over P --up-to FREQUENCY"
-        raise UsageError(Diagnostic("SF902", "--up-to does not apply to a chart", None, hint))
     if spare := [name for name, *_ in given.ranges if name not in names]:
         message = f"a range of '{spare[0][:64]}', which is not asked for with --over"
         raise UsageError(Diagnostic("SF902", message))
     return names
 
 
-def _end_inside(function: CharacteristicFunction, limits: Ends) -> float | str:
-    """Return the end of the poles at a value in a range: over all of it they may have no known one."""
-    middle, beside = (limits[0] + share * (limits[1] - limits[0]) for share in INSIDE)
+def _end_inside(function: CharacteristicFunction, ranges: Box) -> float | str:
+    """Return the end of the poles at values in ranges: over all of these they may have no known one."""
+    middle, beside = (share_of_ranges(ranges, share) for share in INSIDE)
     try:
-        return function.whole(((middle, middle),)).radius
+        return function.whole(middle).radius
     except ModelError:  # a wave equation may lose its highest derivative in the middle
-        return function.whole(((beside, beside),)).radius
+        return function.whole(beside).radius
 
 
 def seen_pair(model: Model) -> tuple[str, str]:
@@ -306,7 +309,7 @@ def _counted_to_the_end(
     end = function.whole((limits,)).radius
     if isinstance(end, str) or not PolesUpTo.serves(function):
         return None
-    return PolesUpTo.of(function, limits, end, bits).count((part[0] + part[1]) / 2, Fraction(end))
+    return PolesUpTo.of(function, (limits,), end, bits).count([(part[0] + part[1]) / 2], Fraction(end))
 
 
 def find_intervals_up_to(
@@ -319,7 +322,7 @@ def find_intervals_up_to(
     reason: str,
 ) -> StabilityMap:
     """Return the same of poles up to a frequency [rad/s], where others have no end for the reason given."""
-    poles = PolesUpTo.of(function, limits, up_to, bits_for_digits(digits) + BITS)
+    poles = PolesUpTo.of(function, (limits,), up_to, bits_for_digits(digits) + BITS)
 
     def halves(part: OpenPart) -> list[OpenPart]:
         return [] if _is_narrow(part.ends, limits, digits) or poles.is_bare(part.ends) else part.halves
@@ -399,7 +402,7 @@ def _counted_up_to(poles: PolesUpTo, parts: Sequence[OpenPart]) -> tuple[list[In
     counted, uncounted = list[Interval](), list[Ends]()
     for circle, row in groupby(parts, key=lambda part: part.circle):
         for ends in _joined([part.ends for part in row]):
-            count = None if circle is None else poles.count((ends[0] + ends[1]) / 2, circle)
+            count = None if circle is None else poles.count([(ends[0] + ends[1]) / 2], circle)
             if count is None:
                 uncounted.append(ends)
                 continue

@@ -50,6 +50,15 @@ class Bound:
         """Whether a shorter path would not be told from this one."""
         return not self.by_part < inf or self.by_path < self.by_part
 
+    def both(self, other: Bound) -> Bound:
+        """Return what is known if this and another are."""
+        return Bound(
+            self.may_vanish and other.may_vanish,
+            self.may_turn and other.may_turn,
+            min(self.by_part, other.by_part),
+            min(self.by_path, other.by_path),
+        )
+
 
 @dataclass(frozen=True, eq=False)
 class Patch:

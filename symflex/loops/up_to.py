@@ -42,20 +42,33 @@ from symflex.balls import (
 )
 from symflex.budget import spend
 from symflex.expressions import names_among
-from symflex.loops.boxes import BITS, CharacteristicFunction, Ends, FirstOrder, Piece, factors_of
+from symflex.loops.boxes import (
+    BITS,
+    Box,
+    CharacteristicFunction,
+    Ends,
+    FirstOrder,
+    OpenBox,
+    Piece,
+    factors_of,
+)
 from symflex.loops.patches import FINER_BITS, ROOM, ULP, Bound, Patch, patch
 from symflex.loops.stability_map import PoleCount
 from symflex.roots.functions.kernel_function import ANYWHERE, KernelFunction
+from symflex.roots.pole_zero_map import StabilityVerdict
 from symflex.roots.root import exact_fraction
 
 WAVES = 10.0  # largest argument of a kernel up to which poles are counted if no frequency is given
 FEW_WAVES = 2  # radians up to which exponentials of matrices are sharper than sums of exponentials
 FEW = 4.0  # radians of waves for which a path has as many cells as for less
 WIDER = tuple(1 + Fraction(k, 32) for k in range(9))  # of the circle, for parts whose poles meet it
+ONE = (Fraction(1),)  # circle, that of the frequency itself
 SHORTEST = 1e-9  # share of a path that is not halved where poles are counted
 MOST_OPEN = 48  # pieces left open after which others stay as they are: halves of the part leave fewer
 SPARE = 20  # bits by which pieces of the axis that are not halved are wider than the precision
 SHARES = (Fraction(0), Fraction(3, 8), Fraction(1, 2), Fraction(1))  # of a range, at which waves are compared
+ARC: Piece = (Fraction(0), Fraction(1))  # stands for an arc that poles may meet
+MIDDLE = Fraction(1, 2)  # share of a range
 SHORT = 64  # times as long as a part is the range, if a highest derivative vanishes in it
 SHORTER, BESIDE = 3, 4  # times as many waves as elsewhere; part of the range beside which they are looked for
 DEEPEST = 7  # halvings of the range until a patch has to serve
@@ -123,32 +136,76 @@ class Path:
 
 
 @dataclass(frozen=True, slots=True)
-class PartValues:
-    """The factors for all values of the parameter in a part."""
+class BoxesUpTo:
+    """What a chart asks about boxes of parameters, of poles up to a frequency."""
 
-    ends: Ends
+    poles: PolesUpTo  # with one circle
+
+    def whole(self, box: Box) -> OpenBox:
+        """Return a box about which nothing is known yet."""
+        return OpenBox(box, float(self.poles.radius), (*self.poles.pieces, (ARC,)))
+
+    def halves(self, box: OpenBox) -> list[OpenBox]:
+        """Return both halves of a box, parted along the longest of its sides, in shares of the ranges."""
+        sides = zip(box.box, self.poles.ranges, strict=True)
+        shares = tuple(float((b - a) / (high - low)) for (a, b), (low, high) in sides)
+        return self.poles.function.halves(replace(box, weights=shares))
+
+    def narrowed(self, box: OpenBox) -> OpenBox:
+        """Return the box with the pieces of the axis that stay open and, last, the arc if it does."""
+        return self.poles.narrowed_box(box)
+
+    def verdict_at(self, point: Sequence[Fraction]) -> StabilityVerdict:
+        """Return what holds at a point, as far as poles are counted."""
+        count = self.poles.count(point, self.poles.axis.end)
+        if count is None:
+            return StabilityVerdict("unknown", None, False, "poles could not be counted in a region")
+        word: Literal["stable", "marginal", "unstable"] = "marginal" if count.axis else "stable"
+        reason = f"poles are counted up to {float(self.poles.axis.end) / (2 * pi):.4g} Hz"
+        return StabilityVerdict("unstable" if count.right else word, count.right, False, reason)
+
+
+@dataclass(frozen=True, slots=True)
+class PartValues:
+    """The factors for all values of the parameters in a box."""
+
+    box: Box
     near: FirstOrder  # sharp next to s = 0
     far: FirstOrder
+
+    @property
+    def is_point(self) -> bool:
+        """Whether each parameter has one value."""
+        return all(low == high for low, high in self.box)
 
 
 @dataclass(frozen=True, eq=False)
 class PolesUpTo:
-    """The poles of a model up to a frequency, for values of one parameter."""
+    """The poles of a model up to a frequency, for values of some parameters."""
 
     function: CharacteristicFunction
     radius: Fraction  # the frequency [rad/s]
-    limits: Ends
+    ranges: Box
     bits: int  # precision of values on narrow parts
+    circles: tuple[Fraction, ...]  # times the frequency: of arcs that are tried
 
     @classmethod
-    def of(cls, function: CharacteristicFunction, limits: Ends, radius: float | None, bits: int) -> PolesUpTo:
+    def of(
+        cls,
+        function: CharacteristicFunction,
+        ranges: Box,
+        radius: float | None,
+        bits: int = BITS,
+        circles: tuple[Fraction, ...] = WIDER,
+    ) -> PolesUpTo:
         """Return those up to a frequency [rad/s], without one up to a few waves of the longest element."""
         function = replace(function, is_alone=True)
         if radius is None:
-            last = limits[1] if _keeps_order(function, (limits[1],) * 2) else _middle(limits)
-            moving = _kernel_functions(function, function.at_rest[1], last)
+            last, middle = share_of_ranges(ranges, Fraction(1)), share_of_ranges(ranges, MIDDLE)
+            at = last if _keeps_order(function, last) else middle
+            moving = _kernel_functions(function, function.at_rest[1], at)
             radius = min(part.frequency_of(WAVES) for part in moving)
-        return cls(function, Fraction(radius), limits, bits)
+        return cls(function, Fraction(radius), ranges, bits, circles)
 
     @staticmethod
     def serves(function: CharacteristicFunction) -> bool:
@@ -159,14 +216,25 @@ class PolesUpTo:
     @property
     def whole(self) -> OpenPart:
         """The range, and the axis up to the widest circle for each factor that the parameter moves."""
+        return OpenPart(self._limits, self.pieces)
+
+    @property
+    def _limits(self) -> Ends:
+        """The range of the one parameter."""
+        (limits,) = self.ranges
+        return limits
+
+    @property
+    def pieces(self) -> tuple[tuple[Piece, ...], ...]:
+        """Those of the axis up to the widest circle, for each factor that the parameters move."""
         first = -self._cells if self.function.is_complex else 0
         marks = [Fraction(k, self._cells) for k in range(first, self._cells + 1)]
-        return OpenPart(self.limits, tuple(tuple(pairwise(marks)) for _ in self._moving))
+        return tuple(tuple(pairwise(marks)) for _ in self._moving)
 
     @cached_property
     def axis(self) -> Path:
         """The axis up to the widest circle."""
-        return self._path("axis", self.radius * WIDER[-1])
+        return self._path("axis", self.radius * self.circles[-1])
 
     def _path(self, kind: Literal["axis", "arc"], end: Fraction) -> Path:
         signs = (-1, 1) if self.function.is_complex else (1,)
@@ -195,20 +263,19 @@ class PolesUpTo:
 
     @cached_property
     def _moving(self) -> list[int]:
-        """Those whose roots depend on the parameter."""
+        """Those whose roots depend on the parameters."""
         moving = self.function.at_rest[1]
         return [i for i, (factor, _) in enumerate(self._factors) if factor in moving]
 
     @cached_property
     def _parts(self) -> list[list[KernelFunction]]:
-        """The factors for some values of the range, the last one at its end if possible."""
-        low, high = self.limits
-        values = (low + share * (high - low) for share in SHARES)
-        return [self._at(value) for value in values if _keeps_order(self.function, (value, value))]
+        """The factors for some values of the ranges, the last ones at their ends if possible."""
+        points = (share_of_ranges(self.ranges, share) for share in SHARES)
+        return [self._at(point) for point in points if _keeps_order(self.function, point)]
 
-    def _at(self, value: Fraction) -> list[KernelFunction]:
-        """Return the factors for one value."""
-        return _kernel_functions(self.function, [f for f, _ in self._factors], value)
+    def _at(self, point: Box) -> list[KernelFunction]:
+        """Return the factors at a point."""
+        return _kernel_functions(self.function, [f for f, _ in self._factors], point)
 
     @cached_property
     def _are_real_on_axis(self) -> list[bool]:
@@ -222,21 +289,21 @@ class PolesUpTo:
         """
         if not self._may_lose_order:
             return False
-        if not _keeps_order(self.function, ends):
+        if not _keeps_order(self.function, (ends,)):
             return (ends[1] - ends[0]) * SHORT < self._width
-        return self._reach(self._at(_middle(ends))) > SHORTER * self._waves[0]
+        return self._reach(self._at(share_of_ranges((ends,), MIDDLE))) > SHORTER * self._waves[0]
 
     @cached_property
     def _may_lose_order(self) -> bool:
         """Whether a wave equation loses its highest derivative in the range, or beside it."""
-        (low, high), beside = self.limits, self._width / BESIDE
-        return not _keeps_order(self.function, (low - min(beside, abs(low) / BESIDE), high + beside))
+        (low, high), beside = self._limits, self._width / BESIDE
+        return not _keeps_order(self.function, ((low - min(beside, abs(low) / BESIDE), high + beside),))
 
     def narrowed(self, part: OpenPart) -> OpenPart | Open[OpenPart]:
         """Return the part with a circle if poles stay where they are, else what the axis still has open."""
-        if not _keeps_order(self.function, part.ends) or self.is_bare(part.ends):
+        if not _keeps_order(self.function, (part.ends,)) or self.is_bare(part.ends):
             return Open(part)
-        values = self._on(part.ends)
+        values = self._on((part.ends,))
         pieces = zip(self._moving, part.pieces, strict=True)
         narrowed = replace(part, pieces=tuple(self._left(values, factor, each) for factor, each in pieces))
         circle = None if any(narrowed.pieces) else self._circle_for(part.ends)
@@ -246,7 +313,7 @@ class PolesUpTo:
         """Return the radius of an arc that no pole meets for any value in a part, None if none is known."""
         for around in self._about(ends):
             if around not in self._free:
-                values, circles = self._on(around), (self.radius * times for times in WIDER)
+                values, circles = self._on((around,)), (self.radius * times for times in self.circles)
                 arcs = (self._path("arc", circle) for circle in circles)
                 self._free[around] = next((a.end for a in arcs if self._is_free(values, a)), None)
             if self._free[around] is not None:
@@ -259,17 +326,26 @@ class PolesUpTo:
 
     def _about(self, ends: Ends) -> Iterator[Ends]:
         """Yield the range, its half about a part, and so on down to the part."""
-        around: Ends | None = self.limits
+        around: Ends | None = self._limits
         while around is not None:
             yield around
             halves = halved(around) if around != ends else []
             around = next((h for h in halves if h[0] <= ends[0] and ends[1] <= h[1]), None)
 
-    def _on(self, ends: Ends) -> PartValues:
+    def narrowed_box(self, box: OpenBox) -> OpenBox:
+        """Return a box of parameters with the pieces of the axis that stay open, and the arc if it does."""
+        if not _keeps_order(self.function, box.box):
+            return box
+        values, (*every, arc) = self._on(box.box), box.pieces
+        axis = tuple(self._left(values, i, each) for i, each in zip(self._moving, every, strict=True))
+        is_clear = not any(axis) and self._is_free(values, self._path("arc", self.axis.end))
+        return replace(box, pieces=(*axis, () if is_clear else arc))
+
+    def _on(self, box: Box) -> PartValues:
         tf, _ = self.function.at_rest
         factors = tuple(f for f, _ in self._factors)
         kinds = (replace(self.function, is_modal=False), self.function)
-        return PartValues(ends, *(FirstOrder(function, tf, factors, (ends,)) for function in kinds))
+        return PartValues(box, *(FirstOrder(function, tf, factors, box) for function in kinds))
 
     def _left(self, values: PartValues, factor: int, pieces: Sequence[Piece]) -> tuple[Piece, ...]:
         """Return pieces of the axis, as shares of it, on which poles may leave it, ascending."""
@@ -307,27 +383,30 @@ class PolesUpTo:
 
     def _bound(self, values: PartValues, factor: int, path: Path, piece: Piece) -> Bound:
         """Return what is known of a factor on a piece of a path, for all values in a part."""
-        (low, high), ends = piece, values.ends
-        known = None
-        if path.kind == "arc" or path == self.axis:
+        low, high = piece
+        if len(values.box) == 1 and (path.kind == "arc" or path == self.axis):
+            (ends,) = values.box
             known = self._patch(factor, path, floor((low + high) / 2 * path.cells), ends)
-        if known is None and ends[0] < ends[1] and (ends[1] - ends[0]) * 2**DEEPEST > self._width:
-            return Bound(True, True, 1.0, 0.0)
-        if known is not None:
-            at = complex(path.middle(piece))
-            off = float(ends[1] - ends[0]) / 2
-            found, is_rough = known.on(at, path.reach(piece), float(_middle(ends)), off)
-            if is_rough or not self._is_open(factor, found):
-                return found
+            if known is not None:
+                at = complex(path.middle(piece))
+                off = float(ends[1] - ends[0]) / 2
+                found, is_rough = known.on(at, path.reach(piece), float(_middle(ends)), off)
+                if is_rough or not self._is_open(factor, found):
+                    return found
+            elif (ends[1] - ends[0]) * 2**DEEPEST > self._width:
+                return Bound(True, True, 1.0, 0.0)
         with precision(self.bits):
             # Next to s = 0 roots of dispersions meet; far out exponentials of matrices lose digits.
             waves = path.cells * max(-low, high) if path.kind == "axis" else 2 * path.cells
-            sharper = values.near if waves <= FEW_WAVES else values.far
-            return _directly(sharper, factor, path.box(piece), path.middle(piece))
+            sharper = (values.near, values.far) if waves <= FEW_WAVES else (values.far, values.near)
+            found = _directly(sharper[0], factor, path.box(piece), path.middle(piece))
+            if len(values.box) > 1 and self._is_open(factor, found):
+                found = found.both(_directly(sharper[1], factor, path.box(piece), path.middle(piece)))
+            return found
 
     @property
     def _width(self) -> Fraction:
-        return self.limits[1] - self.limits[0]
+        return self._limits[1] - self._limits[0]
 
     def _patch(self, factor: int, path: Path, number: int, ends: Ends) -> Patch | None:
         """Return what stands for a factor about a piece of a path, on the largest part about another."""
@@ -362,11 +441,11 @@ class PolesUpTo:
         half = float(ends[1] - ends[0]) / 2
         return patch(value, complex(path.middle(cell)), ROOM * path.reach(cell), float(middle), ROOM * half)
 
-    def count(self, at: Fraction, circle: Fraction) -> PoleCount | None:
-        """Return how many poles lie on the right and on the axis for one value; None if it is not proved."""
+    def count(self, point: Sequence[Fraction], circle: Fraction) -> PoleCount | None:
+        """Return how many poles lie on the right and on the axis at a point; None if it is not proved."""
         tf, _ = self.function.at_rest
         at_rest = tf.den.exponent_of(tf.ratio.ring.generator(LAPLACE))  # powers of s beside the factors
-        total, values = PoleCount(0, at_rest), self._on((at, at))
+        total, values = PoleCount(0, at_rest), self._on(tuple((x, x) for x in point))
         with suppress(UndecidedError):
             for factor, (_, exponent) in enumerate(self._factors):
                 factor_poles = self._count(values, factor, circle)
@@ -411,7 +490,6 @@ class PolesUpTo:
 
         On the axis, where it is real, each may have at ``most`` one, which is simple.
         """
-        first, last = values.ends
 
         def piece_of(sign: int, low: float, high: float) -> Piece:
             # Poles meet an arc next to the axis, where it ends: looked at first, they end the search.
@@ -422,7 +500,7 @@ class PolesUpTo:
         def decide(sign: int, low: float, high: float) -> bool | None:
             found = self._bound(values, factor, path, piece_of(sign, low, high))
             has_more = found.may_vanish and (found.may_turn or not most)
-            if has_more and found.is_as_sharp_as_the_part and first < last:
+            if has_more and found.is_as_sharp_as_the_part and not values.is_point:
                 raise UndecidedError  # no shorter piece serves
             return not has_more or None
 
@@ -489,22 +567,27 @@ def _directly(values: FirstOrder, factor: int, s: acb, middle: acb) -> Bound:
     )
 
 
-def _keeps_order(function: CharacteristicFunction, ends: Ends) -> bool:
+def _keeps_order(function: CharacteristicFunction, box: Box) -> bool:
     tf, _ = function.at_rest
     with precision(BITS):
-        kernels = function.kernels(tf, (ends,))
+        kernels = function.kernels(tf, box)
         at, laws = kernels.generators_at(acb(*ANYWHERE)), tf.kernels.dispersions
         return all(at_centre(kernels.value(c, at)).is_finite() for law in laws for c in law.characteristic)
 
 
 def _kernel_functions(
-    function: CharacteristicFunction, factors: Sequence[fmpz_mpoly], at: Fraction
+    function: CharacteristicFunction, factors: Sequence[fmpz_mpoly], point: Box
 ) -> list[KernelFunction]:
-    """Return factors that are entire at s = 0 for one value of the parameter."""
+    """Return factors that are entire at s = 0 at a point."""
     tf, _ = function.at_rest
-    bound = function.bound_in(tf, ((at, at),))
+    bound = function.bound_in(tf, point)
     return [KernelFunction(bound, Factored.polynomial(tf.ratio.ring, factor)) for factor in factors]
 
 
 def _middle(ends: Ends) -> Fraction:
     return (ends[0] + ends[1]) / 2
+
+
+def share_of_ranges(box: Box, share: Fraction) -> Box:
+    """Return the point at a share of each range."""
+    return tuple((low + share * (high - low),) * 2 for low, high in box)

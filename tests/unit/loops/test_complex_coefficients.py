@@ -7,7 +7,6 @@ import mpmath
 import pytest
 
 import symflex
-from symflex.errors import ModelError
 
 # Jeffcott's rotor with damping from outside and from inside is stable up to the speed w (1 + c_e/c_i) with
 # w^2 = k/m, where it whirls with w (Kimball 1924); in axes that turn with it, with w less the speed.
@@ -197,10 +196,16 @@ def test_a_string_that_moves_stays_on_the_axis_in_turning_axes():
     assert [(i.poles.right, i.poles.axis) for i in found.proved.intervals] == [(0, 4)]
 
 
-def test_over_two_parameters_waves_with_complex_coefficients_are_refused():
+def test_a_chart_of_waves_with_complex_coefficients_has_the_onset_of_its_first_mode():
+    # Unstable where W > pi^2 (1 + c/c_i), by one pole.
     model = symflex.loads(SHAFT.format(equation="w'''' + c*s*w + c_i*(s - j*W)*w", **VISCOUS))
-    with pytest.raises(ModelError, match="waves that have complex coefficients"):
-        model.stability(over=("W", "c"), ranges={"W": (14, 15), "c": (1, 2)})
+    ranges = {"W": (14, 16), "c": (0.9, 1.1)}
+    chart = model.stability(over=("W", "c"), ranges=ranges, up_to_hz=2, resolve=0.6)
+    assert sorted(region.verdict.right for region in chart.regions) == [0, 1]
+    for part in (part for part in chart.boxes if part.region >= 0):
+        right, (speeds, losses) = chart.regions[part.region].verdict.right, part.box
+        corners = {float(w) > pi**2 * (1 + float(c) / 2) for w in speeds for c in losses}
+        assert corners == {bool(right)}
 
 
 def test_a_pole_that_passes_0_is_at_0_once():
@@ -223,3 +228,12 @@ def test_a_hidden_rotor_meets_the_axis_on_its_own_side():
     found = beside("m*s^2*y + c_i*(s + j*W)*y + k*y = 0").stability(over="W", limits=(0, 1000))
     assert found.certified and found.is_stable
     assert ends(found) == [(pytest.approx(NATURAL, rel=1e-13), [pytest.approx(-NATURAL, rel=1e-13)], 1)]
+
+
+def test_a_pole_that_no_gain_moves_keeps_a_model_with_complex_coefficients_unstable():
+    # i has the pole -(R + K) - j omega; v adds 1, which K does not move, to what i shows.
+    text = CURRENT.replace('u = "K*(1 + 1/(T_n*s))*exp(-s*T)*(w - i)"', 'u = "K*(w - i)"')
+    text = text.replace('I = "i"', 'I = "i", V = "v"') + 'v = "i/(s - 1)"\n'
+    found = symflex.loads(text).stability("K")
+    assert found.proved.apart.verdict.word == "unstable" and not found.is_stable
+    assert [(i.poles.right, i.poles.axis) for i in found.proved.intervals] == [(1, 0)]

@@ -441,8 +441,8 @@ def test_what_is_no_chart_is_refused(over: tuple[str, str], low: float, code: st
     [
         (
             {"over": ("a", "T"), "up_to_hz": 2},
-            "--up-to does not apply to a chart",
-            "ask for one parameter: --over P --up-to FREQUENCY",
+            "--up-to does not apply to this chart: all poles are counted",
+            "leave it out",
         ),
         (
             {"over": "a", "limits": (-1, 1)},

@@ -15,7 +15,6 @@ from flint import acb, acb_series
 
 from symflex import loads
 from symflex.balls import precision, series_terms
-from symflex.errors import UsageError
 from symflex.loops.over import characteristic
 from symflex.loops.patches import patch
 from symflex.loops.up_to import Path, PolesUpTo
@@ -186,22 +185,30 @@ def test_patches_keep_their_digits_where_wavenumbers_nearly_meet():
     # At EI = 0.01 and v = 1 series about s = 0.19 j lose more digits than 64 bits have.
     limits = Fraction(1, 2), Fraction(2)
     function = characteristic(loads(LIMP).resolved, ("v",), (limits,))
-    poles = PolesUpTo.of(function, limits, pi, 128)
+    poles = PolesUpTo.of(function, (limits,), pi, 128)
     made = poles._patch_on(0, poles.axis, 3, (Fraction(7, 8), Fraction(17, 16)))
     assert made is not None and made.error < 1e-4 * abs(made.coefficients[0, 0])
 
 
 @pytest.mark.slow
 def test_a_belt_with_little_stiffness_buckles_next_to_its_wave_speed():
-    found = loads(LIMP).stability(over="v", limits=(0.875, 1.125), up_to_hz=0.5, digits=10)
+    found = loads(LIMP).stability(over="v", limits=(1, 1.0625), up_to_hz=0.5, digits=10)
     (boundary,) = found.proved.boundaries
     assert abs(float(boundary.gain.mid()) - sqrt(1 + 0.01 * pi**2)) < 1e-10
     assert [i.poles.word for i in found.proved.intervals] == ["marginal", "unstable"]
 
 
-def test_up_to_a_frequency_a_chart_is_refused():
-    with pytest.raises(UsageError, match="does not apply to a chart"):
-        loads(FOLLOWER).stability(over=("P", "m"), up_to_hz=2)
+def test_up_to_a_frequency_a_chart_is_decided_on_both_sides_of_a_boundary():
+    # Euler: P = pi^2 EI/4.
+    ranges = {"P": (2, 3), "EI": (0.95, 1.05)}
+    chart = loads(DEAD).stability(over=("P", "EI"), ranges=ranges, up_to_hz=1, resolve=0.6)
+    assert not chart.certified and chart.radius == pytest.approx(2 * pi)
+    assert {region.verdict.word for region in chart.regions} == {"marginal", "unstable"}
+    for part in (part for part in chart.boxes if part.region >= 0):
+        (low, high), (soft, stiff) = part.box
+        is_right = bool(chart.regions[part.region].verdict.right)
+        assert is_right == (float(low) > pi**2 / 4 * float(stiff)) != (float(high) < pi**2 / 4 * float(soft))
+    assert chart.boundaries == [] and chart.to_json_dict()["counted_up_to_rad_per_s"] == chart.radius
 
 
 @pytest.mark.slow
@@ -304,7 +311,7 @@ def test_no_patch_stands_for_a_function_with_a_constant_that_its_parameter_chang
     # sqrt(beta) would stay what it is in the middle.
     ends = (Fraction(1, 8), Fraction(1, 4))
     for name in ("beta", "U"):
-        poles = PolesUpTo.of(characteristic(loads(PIPE).resolved, (name,), (ends,)), ends, 5.0, 64)
+        poles = PolesUpTo.of(characteristic(loads(PIPE).resolved, (name,), (ends,)), (ends,), 5.0, 64)
         assert (poles._patch_on(0, poles.axis, 1, ends) is None) == (name == "beta")
 
 
@@ -410,3 +417,91 @@ def test_a_critical_load_is_that_of_the_book(parameters, equation, ends, limits,
     assert float(boundary.gain.mid()) == pytest.approx(value, rel=1e-11)
     assert [float(w.mid()) for w in boundary.frequencies] == pytest.approx([omega], rel=1e-10)
     assert found.proved.change(0) == change
+
+
+def poles_up_to(text, name, limits, radius):
+    function = characteristic(loads(text).resolved, (name,), (limits,), has_complex_waves=True)
+    return PolesUpTo.of(function, (limits,), radius, 128)
+
+
+def of_polynomials(poles, *coefficients):
+    """Return the same search of polynomials in s, in place of the model's factors."""
+    tf, _ = poles.function.at_rest
+    s, ring = tf.ratio.ring.generator("s"), tf.ratio.ring
+    factors = [sum((c * s**k for k, c in enumerate(each)), ring.constant(0)) for each in coefficients]
+    vars(poles).update(_factors=tuple((f, 1) for f in factors), _moving=[*range(len(factors))])
+    return poles
+
+
+def test_a_factor_that_is_there_twice_has_its_poles_twice():
+    # A column below Beck's load has two pairs up to 2.5 Hz on the axis; beyond, one pole in each quadrant.
+    poles, twice = (poles_up_to(FOLLOWER, "P", (Fraction(19), Fraction(21)), 5 * pi) for _ in range(2))
+    vars(twice)["_factors"] = tuple((f, 2) for f, _ in poles._factors)
+    for load, right, axis in [(19, 0, 4), (21, 2, 0)]:
+        counts = [each.count([Fraction(load)], each.radius) for each in (poles, twice)]
+        assert [(c.right, c.axis) for c in counts] == [(right, axis), (2 * right, 2 * axis)]
+
+
+@pytest.mark.parametrize(("meets", "expected"), [((-6, 1), False), ((6, 1), True), ((-7, 1), True)])
+def test_an_arc_is_free_if_no_factor_meets_it(meets, expected):
+    poles = of_polynomials(poles_up_to(FOLLOWER, "P", (Fraction(19), Fraction(21)), 6), (1, 1), meets)
+    values = poles._on(((Fraction(20), Fraction(20)),))
+    assert poles._is_free(values, poles._path("arc", Fraction(6))) is expected
+
+
+def test_poles_meet_within_the_piece_that_is_asked_for_or_none_is_known():
+    load, omega = Fraction(BECK), Fraction(BECK_OMEGA)
+    poles, wide = poles_up_to(FOLLOWER, "P", (Fraction(19), Fraction(21)), 5 * pi), Fraction(1, 10**4)
+    ends = load - Fraction(1, 10**9), load + Fraction(1, 10**9)
+    low, high = poles._meeting(ends, 0, (omega - wide, omega + wide))
+    assert low < omega < high and high - low < wide
+    assert poles._meeting(ends, 0, (omega - 3, omega - 3 + wide)) is None
+
+
+def test_a_piece_below_0_belongs_to_the_cell_it_lies_in():
+    text = COLUMN.format(bending="EI*w'''' + j*c*s*w", shear="EI*w'''(L)")
+    poles = poles_up_to(text, "P", (Fraction(1), Fraction(2)), 10)
+    part = Fraction(1, poles.axis.cells)
+    values = poles._on(poles.ranges)
+    for number in (-2, -1, 0, 1):
+        vars(poles)["_patches"] = {}
+        poles._bound(values, poles._moving[0], poles.axis, (number * part, (number + 1) * part))
+        assert {key[2] for key in poles._patches} == {number}
+
+
+@pytest.mark.parametrize(
+    ("limits", "loses", "bare", "wide"),
+    [
+        # A string at its wave speed, 1: its waves are s/(1 - v), 1.25 s at both ends; three times as many.
+        (("0.2", "1.8"), True, ["0.85", "1.15"], ["0.7", "1.3"]),
+        (("0.2", "0.9"), True, ["0.85"], ["0.7"]),
+        (("1.1", "1.8"), True, ["1.2"], ["1.28"]),
+        (("1.05", "1.3"), True, [], ["1.25"]),
+        (("0.2", "0.4"), False, [], ["0.2", "0.39"]),
+    ],
+)
+def test_next_to_its_wave_speed_a_string_is_bare(limits, loses, bare, wide):
+    poles = poles_up_to(STRING, "v", tuple(map(Fraction, limits)), 1.0)
+    assert poles._may_lose_order is loses
+    for starts, expected in [(bare, True), (wide, False)]:
+        for start in map(Fraction, starts):
+            assert poles.is_bare((start, start + Fraction(1, 100))) is expected
+    if poles.ranges[0][1] > 1 > poles.ranges[0][0]:  # a part with the wave speed in it is too near if narrow
+        for half, expected in [(Fraction(1, 1000), True), (Fraction(2, 5), False)]:
+            assert poles.is_bare((1 - half, 1 + half)) is expected
+
+
+def test_poles_without_end_below_the_real_axis_are_no_less_without_end():
+    # -(1 + 5 j) P s/5 is minus the square of n pi: all poles n^2 pi^2 (1 - 5 j)/(5.2 P) are on the right.
+    text = COLUMN.format(bending="w''", shear="w'''(L)").split("[fields.w]")[0].replace("w(L)", "w'(1)")
+    text += """[fields.w]
+domain = ["0", "1"]
+equation = "w'' + 0.2*P*s*w {sign} j*P*s*w = 0"
+conditions = ["w(0) = 0", "w(1) = F"]
+"""
+    ranges = ((Fraction(1), Fraction(2)),)
+    for sign in "+-":
+        model = loads(text.replace("{sign}", sign)).resolved
+        assert isinstance(
+            characteristic(model, ("P",), ranges, has_complex_waves=True).whole(ranges).radius, str
+        )

@@ -1,19 +1,24 @@
 """Roots carried along a sweep: the same as those of a search at every point, and right."""
 
+import cmath
 from dataclasses import replace
 from fractions import Fraction
+from math import pi
 
 import mpmath
 import numpy as np
 import pytest
 from flint import arb
 from mpmath import mp, mpf
+from scipy.optimize import brentq
 
 import symflex
+from symflex.loops.boxes import CharacteristicFunction
 from symflex.options import SweepOptions
+from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.pole_zero_map import StabilityVerdict
 from symflex.sweep import plan_sweep, points
-from symflex.sweep.continuation import Continuation, _end_of_straight
+from symflex.sweep.continuation import Carried, Continuation, _Circle, _end_of_straight
 from symflex.sweep.design import derived
 from symflex.sweep.points import RootSolver, solve_roots
 from tests.unit.sweep.models import BEAM, LOOP, STEEL, TWO_RESONANCES
@@ -217,3 +222,71 @@ def test_a_straight_way_leads_past_a_point_all_of_whose_roots_are_within_the_con
     assert _end_of_straight([start, replace(between, roots=(root, outside)), end], 0, 2) == 1
     beside = replace(between, numbers=(Fraction(4),))
     assert _end_of_straight([start, beside, end], 0, 2) == 1
+
+
+def test_roots_of_which_two_became_real_are_not_carried(carried):
+    continuation, at = carried
+    real = replace(at.roots[0], im=arb(0), is_real=True)
+    point = planned(DAMPED, ["b=2,3"], modes=1)[1].points[1]
+    assert continuation._following([at], point) is not None
+    changed = replace(continuation)
+    vars(changed)["_roots"] = lambda sides, guesses: (real,)
+    assert changed._following([at], point) is None
+
+
+def test_roots_that_may_hide_at_0_are_carried_neither_at_first_nor_on_the_way(carried):
+    continuation, at = carried
+    points = planned(DAMPED, ["b=2,3"], modes=1)[1].points
+    hiding = replace(continuation)
+    vars(hiding)["_hides_at_zero"] = lambda at_zero, numbers: True
+    assert hiding.begin(points[0], [complex(at.roots[0])], 0) is None
+    assert hiding._following([at], points[1]) is None
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_roots_next_to_which_others_accumulate_are_not_carried(carried, side):
+    continuation, at = carried
+    sides = [KernelFunction(each.bound, each.part, each) for each in at.sides]
+    guesses = [at.roots[0].enclosure().mid()]
+    assert continuation._roots(tuple(sides), guesses) is not None
+    vars(sides[side])["is_analytic_on"] = lambda disc, bits: False
+    assert continuation._roots(tuple(sides), guesses) is None
+
+
+def test_on_a_straight_way_no_pole_may_cross_the_axis():
+    # s^2 + 20 s + 1e4 (1 + K exp(-s T)): with s = j w, K^2 = (1 - w^2/1e4)^2 + (w/500)^2 and the phase of
+    # that is that of the delay, pi - w T: K = 0.2013 at w = 100.2... found by bisection beside.
+    def phase(w):
+        return np.angle((1e4 - w * w + 20j * w) / 1e4 / -np.exp(-0.01j * w))
+
+    w = brentq(phase, 90, 130)
+    crossing = abs(1e4 - w * w + 20j * w) / 1e4
+    task, design = planned(DELAYED, [f"K={0.8 * crossing},{0.9 * crossing},{1.1 * crossing}"], modes=1)
+    continuation = Continuation.of(derived(task), task.names, "poles", task.region)
+    at = [Carried(tuple(x.rational for x in p), (), (None, None), 0, 0) for p in design.points]
+    assert continuation._keeps_side(at[0], at[1])
+    assert not continuation._keeps_side(at[1], at[2])
+    assert not continuation._keeps_side(at[0], at[2])
+    assert not continuation._is_clear_between(at[0], at[2], 1000)
+
+
+def test_a_part_of_a_circle_is_clear_if_no_root_is_on_it_up_to_its_ends(carried):
+    continuation, at = carried
+    (root,), own = at.roots, at.sides[0]
+    factors = tuple(f for f, _ in own.part.factors)
+    function = CharacteristicFunction(
+        continuation.tf, ("b",), continuation._values, chosen=factors, are_positive=True
+    )
+    z, b = cmath.log(complex(root)), at.numbers[0]
+    for height, angle, expected in [(0, 0, None), (0.05, 0, True), (-0.05, 0, True), (0, 0.05, True)]:
+        for share in (0.02, 0.5, 0.98):
+            circle = _Circle.of(function, ((b, b),), [True], (z.real + height,) * 2, pi)
+            first = (z.imag + angle - 0.02 * share) / pi
+            assert circle.is_clear(first, first + 0.02 / pi) is expected
+    # So it is where the radius changes: the root is met at one end of the way, or not at all.
+    for ends, expected in [((0.02, -0.001), None), ((0.001, -0.02), None), ((0.04, 0.02), True)]:
+        circle = _Circle.of(
+            function, ((b, b + Fraction(1, 10**6)),), [True], tuple(z.real + x for x in ends), pi
+        )
+        first = (z.imag - 0.001) / pi
+        assert circle.is_clear(first, first + 0.002 / pi) is expected
