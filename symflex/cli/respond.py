@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from symflex.analysis.time_response import EnclosedResponse
     from symflex.data.measurement.input_signal import InputSignal
     from symflex.data.measurement.record import TimeRecord
+    from symflex.model import Input, Output
     from symflex.roots import PoleZeroMap
     from symflex.transfer import AnyBoundFunction
 
@@ -33,9 +34,10 @@ def respond(spec: Specification, given: RespondOptions) -> int:
     radius: the response is computed from certified poles, not from time steps.
 
     --to FILE.csv joins its samples by straight lines, or with --hold by steps; the input is 0 before the
-    first sample and constant after the last. This is exact, too. Two samples at one time are a jump.
-    --initial gives values of states at the start, or at the first sample of a file; --to free adds no input.
-    --shaped passes the input through the shaper that 'symflex shape' prints for the same transfer function.
+    first sample and constant after the last. This is exact, too. Two samples at one time are a jump. Values
+    are converted to SI if their heading gives a unit. --initial gives values of states at the start, or at
+    the first sample of a file; --to free adds no input. --shaped passes the input through the shaper that
+    'symflex shape' prints for the same transfer function.
 
     --record FILE drives the model with the input of a time record, which is read as by 'symflex fit'. The rms
     of the difference between measured output and model is printed, and -o draws both, too. An offset of the
@@ -79,9 +81,10 @@ def show_response(spec: Specification, given: RespondOptions) -> int:
     pair = first_pair(model, given.tf, "showing")
     record = _record(path, given) if given.record else None
     signal = read_signal(path) if is_file and not record else None
-    for guess in signal.guesses if signal else ():
-        note(f"{path}: {guess}")
     (bound,) = pipeline.derive_for_roots(model, [pair], is_explained=True)
+    if signal is not None:
+        for said in (*signal.guesses, *_unit_said(signal.unit, "the input", bound.source.input)):
+            note(f"{path}: {said}")
     free = free_motion(model, pair, initial) if initial else None
     shaper = None
     if given.shaped is not None:
@@ -142,23 +145,31 @@ def _times(signal: InputSignal, given: RespondOptions, until: Fraction | None) -
     return tuple(evenly(until or signal.times[-1], given.points or POINTS))
 
 
+def _unit_said(unit: str, called: str, end: Input | Output) -> list[str]:
+    """Return what is to be said of a unit that is not that of an input or output."""
+    from symflex.quantities import unit_of
+
+    if not (end.dimension and unit and unit_of(unit).dimension != end.dimension):
+        return []
+    wanted = end.unit or str(end.dimension)
+    return [f"{called} is in {unit}, and {end.name} in {wanted}: values are not converted"]
+
+
 def _compared(
     record: TimeRecord, bound: AnyBoundFunction, given: RespondOptions, until: Fraction | None
 ) -> EnclosedResponse:
     """Return the response to the input of a record, and the output that was measured; print guesses."""
     from symflex.analysis.time_response import forced_response
-    from symflex.quantities import unit_of
     from symflex.roots.locate import as_quotient
 
     signal, (name, measured) = record.driven(bound.source.output.name)
     source = record.input[0] if record.input else ""
     said = list(signal.guesses)
     for channel, end in ((source, bound.source.input), (name, bound.source.output)):
-        unit, wanted = record.units.get(channel), end.unit or str(end.dimension)
-        if end.dimension and unit is None:
+        if end.dimension and record.units.get(channel) is None:
+            wanted = end.unit or str(end.dimension)
             said.append(f"'{channel}' has no unit in the record, and is taken in {wanted}, as {end.name}")
-        elif end.dimension and unit and unit_of(unit).dimension != end.dimension:
-            said.append(f"'{channel}' is in {unit}, and {end.name} in {wanted}: values are not converted")
+        said += _unit_said(record.units.get(channel, ""), f"'{channel}'", end)
     samples = signal.times, signal.values, _times(signal, given, until), given.digits
     responses = {}
     for is_held in (True,) if given.hold or record.is_held else (False, True):

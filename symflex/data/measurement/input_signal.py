@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal, InvalidOperation
 from fractions import Fraction
@@ -25,6 +26,7 @@ import numpy as np
 
 from symflex.data.measurement.arrays import Arrays, arrays_in, format_of, matrix_of
 from symflex.data.measurement.column_names import SECONDS
+from symflex.data.measurement.heading import units_below, with_unit
 from symflex.data.measurement.measured_response import (
     MAX_BYTES,
     MAX_ERRORS,
@@ -66,6 +68,7 @@ class InputSignal:
     times: tuple[Fraction, ...]  # increasing [s]; twice where the input jumps
     values: tuple[Fraction, ...]  # as many
     guesses: tuple[str, ...] = ()  # what the file does not say, or holds besides
+    unit: str = ""  # of the values, in SI, where the file gives it
 
 
 def read_signal(path: str | Path) -> InputSignal:
@@ -134,7 +137,25 @@ def _signal(name: str, data: bytes) -> InputSignal:
         raise DataError(Diagnostic("SF605", f"'{name}' contains fewer than two samples", None, HINT))
     if max(time.denominator for time in times) > MOST_DIGITS:  # binary numbers written to the end
         times = _decimal_times(times)
-    return InputSignal(tuple(times), tuple(values), tuple(guesses))
+    return _in_si(InputSignal(tuple(times), tuple(values), tuple(guesses)), table, first, names, at + 1)
+
+
+def _in_si(signal: InputSignal, table: TextTable, first: int, names: Sequence[str], at: int) -> InputSignal:
+    """Return a signal in SI, if the heading of its column or a row below gives a unit."""
+    if not names[at:]:
+        return signal
+    below = units_below(table, first, names)
+    called, unit = with_unit(names[at], "")
+    unit = unit or (below[at] if below[at:] else "")
+    known = in_si(unit)
+    if known is None or unit.lower() in SECONDS:
+        said = [f"the unit '{unit[:20]}' is not known: values are as written"] if unit.strip("- ") else []
+        return replace(signal, guesses=(*signal.guesses, *said))
+    factor = Fraction(f"{known[0]:.15g}")
+    converted = f"'{called[:30]}' is in {unit[:20]}, and is read in {known[1]}: times {known[0]:.6g}"
+    said = [converted] if factor != 1 else []
+    values = tuple(value * factor for value in signal.values)
+    return replace(signal, values=values, unit=known[1], guesses=(*signal.guesses, *said))
 
 
 def first_beside(table: TextTable) -> int | None:

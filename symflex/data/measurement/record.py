@@ -34,6 +34,7 @@ from symflex.data.measurement.arrays import (
 )
 from symflex.data.measurement.column_meaning import meaning_of
 from symflex.data.measurement.column_names import SECONDS
+from symflex.data.measurement.heading import units_below, with_unit
 from symflex.data.measurement.input_signal import (
     ARRAYS,
     TIME,
@@ -43,7 +44,7 @@ from symflex.data.measurement.input_signal import (
 )
 from symflex.data.measurement.likely_readings import is_time
 from symflex.data.measurement.measured_response import MAX_LINES, are_few, in_si, listed_names, ratio_of_units
-from symflex.data.measurement.text_table import COMMENTS, SIGNS, TextTable, bare, cut, number
+from symflex.data.measurement.text_table import COMMENTS, TextTable, bare, cut, number
 from symflex.data.measurement.universal_file import UNIVERSAL, signals_in
 from symflex.errors import DataError, Diagnostic, refused
 
@@ -101,13 +102,6 @@ MOST_RECORDS: Final = 100  # of a file, one below the other
 _SIGNALS: Final = ("f", "omega", "w", "\u03c9", "angular")
 """Words for frequencies that signals have, too."""
 _SPECTRUM = re.compile(r"\b(?:fft|psd)\b|spectrum|spectral", re.I)
-_IN_BRACKETS = re.compile(r"\s*[\[(]([^\[\](){}]*(?:\([^()]*\)[^\[\]()]*)?)[\])]\s*$")
-_NODE = re.compile(r"([VI])\w?\(([^()]+)\)", re.I)  # of SPICE: V(out), I(R1), Id(M1)
-_BEHIND = re.compile(r"(?<=\w)(?:\s+in\s+|,\s*)(\S+)$")
-_SUFFIX = re.compile(
-    r"(?<=\w)_(mm|um|nm|mV|uV|kV|mA|kN|mN|Nm|deg|rpm|rad|kPa|bar|N|V|mm_s|m_s2?|rad_s|deg_s)$"
-)
-"""A unit behind a name: ``x in mm``, ``x, mm``, ``x_mm``."""
 _OF_TIME = re.compile(r"(?:t|time)([/_])\s*(?:s|ms)", re.I)
 """Names of a time after which others have their units in the same way, ``F/N`` or ``x_m``."""
 _SAID = re.compile(r"\W*units?(?:[ _]+(?:of[ _]+)?(?P<of>[^:=]+?))?\s*[:=]\s*(?P<unit>[^=]+)", re.I)
@@ -270,7 +264,7 @@ def _asked_columns(
     # A plain t has the unit of the header.
     columns = [x * float(unit) if (i, words[i:][:1]) == (at, ["t"]) else x for i, x in enumerate(columns)]
     cells = names or _names(table, first, width) or [*words, *["-"] * width]
-    named = _in_si(cells, _units_below(table, first, cells), columns, table.lines[:first])
+    named = _in_si(cells, units_below(table, first, cells), columns, table.lines[:first])
     return _with_units(_asked(named.channels, words, interval, stem, guesses, (table, lines)), named)
 
 
@@ -289,7 +283,7 @@ def _of_table(table: TextTable, first: int, stem: str, *, is_timed: bool) -> Tim
         return None
     cells = names or _names(table, first, width) or [f"channel {i + 1}" for i in range(width)]
     columns, lines = _numbers(table, first, width, guesses, unused)
-    named = _in_si(cells, _units_below(table, first, cells), columns, table.lines[:first])
+    named = _in_si(cells, units_below(table, first, cells), columns, table.lines[:first])
     if names and np.isfinite(columns[at]).sum() == 1 and np.nansum(columns[at]) > 0:  # the sampling time
         names, step = [], float(np.nansum(columns[at])) * float(unit)
     lost: Mask | None = None
@@ -405,30 +399,6 @@ def _stated_step(table: TextTable, first: int) -> float | None:
     return None
 
 
-def _units_below(table: TextTable, first: int, names: Sequence[str]) -> list[str]:
-    """Return the units in the line above the first row, none if it is no row of units, or has the names."""
-    above = next((line for line in reversed(table.lines[:first]) if line.strip()), "")
-    text = above.strip().lstrip(SIGNS) if above.strip().startswith(COMMENTS) else above
-    cells = [cell.strip("[]()<> ") for cell in cut(text, table.delimiter)]
-    are_units = [cell.lower() in SECONDS or in_si(cell) is not None for cell in cells]
-    is_row = 1 < len(cells) <= len(names) and cells != [name.strip("[]()<> ") for name in names]
-    return cells if is_row and 2 * sum(are_units) > len(cells) else []
-
-
-def _with_unit(cell: str, style: str) -> tuple[str, str]:
-    """Return a name and the unit that is written behind it, as in ``x [mm]``, ``x in mm`` or ``x_mm``."""
-    text = bare(cell)
-    if (node := _NODE.fullmatch(text)) and (in_si(node[2]) or ("", ""))[1] not in ("V", "A"):
-        return text, {"V": "V", "I": "A"}[node[1].upper()]
-    if match := _IN_BRACKETS.search(text):
-        return text[: match.start()].strip(), match[1].strip()
-    match = _BEHIND.search(text) or _SUFFIX.search(text)
-    if style and not match:
-        match = re.search(rf"(?<=\w)\s*{style}\s*(\(?[^{style}()]+(?:\([^()]+\))?\)?)$", text)
-    unit = re.sub(r"(?<=\w)_(?=s)", "/", match[1]) if match else ""
-    return (text[: match.start()].strip(), unit) if match and in_si(unit) else (text, "")
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class _Named:
     """Channels by name, with values in SI where a file gives their units."""
@@ -460,7 +430,7 @@ def _in_si(
 ) -> _Named:
     """Return channels in SI by their names, the units in a row below, and comments above."""
     style = next((m[1] for cell in cells if (m := _OF_TIME.fullmatch(bare(cell)))), "")
-    parts = [_with_unit(cell, style) for cell in cells]
+    parts = [with_unit(cell, style) for cell in cells]
     if "out" in {unit.lower() for _, unit in parts}:  # ``(in)`` beside it is no inch
         parts = [
             (bare(c), "") if p[1].lower() in ("in", "out") else p for c, p in zip(cells, parts, strict=True)
@@ -662,7 +632,7 @@ def _apart(arrays: Arrays) -> Arrays:
         if array.ndim != 2 or not 1 < min(array.shape) <= MOST_CHANNELS:  # noqa: PLR2004 (a matrix)
             apart[key] = array
             continue
-        called, unit = _with_unit(key, "")
+        called, unit = with_unit(key, "")
         rows = array if array.shape[0] < array.shape[1] else array.T
         apart |= {f"{called} {i}" + f" [{unit}]" * bool(unit): row for i, row in enumerate(rows, 1)}
     return apart

@@ -83,3 +83,11 @@ def test_columns_that_are_not_used_are_named(tmp_path):
     assert read_signal(tmp_path / "u.csv").guesses == ("not used: 'Temp'",)
     (tmp_path / "u.csv").write_text("0,1,2\n1,2,3\n", encoding="utf-8")
     assert read_signal(tmp_path / "u.csv").guesses == ("not used: column 3",)
+
+
+@pytest.mark.parametrize("heading", ["t,F [mN]", "t_s,F_mN", "t (s),F in mN", "time,F\ns,mN"])
+def test_values_are_in_si_where_the_file_gives_their_unit(tmp_path, heading):
+    (tmp_path / "input.csv").write_text(f"{heading}\n0,0\n1,1500\n")
+    found = read_signal(tmp_path / "input.csv")
+    assert (found.values, found.unit) == ((0, Fraction(3, 2)), "N")
+    assert found.guesses == ("'F' is in mN, and is read in N: times 0.001",)
