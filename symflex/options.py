@@ -461,7 +461,9 @@ class StabilityOptions:
 class ContactOptions:
     """Options of ``symflex contact``. Python gives SI units."""
 
-    port: str = option("", "--port", required=True, metavar="NAME", help="A port of [ports], or a node.")
+    port: str | None = option(
+        None, "--port", metavar="PORT", help="Port of [ports], or node.  [default: the only one]"
+    )
     environment: str = option(
         "",
         "--environment",
@@ -510,8 +512,12 @@ class PeakOptions:
 class PassivityOptions:
     """Options of ``symflex passivity``."""
 
-    port: str | None = option(
-        None, "--port", metavar="PORT", help="Port of [ports], or node.  [default: the only one]"
+    ports: Sequence[str] = option(
+        (),
+        "--port",
+        multiple=True,
+        metavar="PORT",
+        help="Port of [ports], or node; twice: a machine with two ports.  [default: the only one]",
     )
     digits: int = option(12, "--digits", least=1, most=100, **SHOWN, help="Correct significant digits.")
     output: str | None = file_option("Figure of the real part over frequency: FILE.pdf, .png, .svg.")
@@ -573,7 +579,13 @@ class PlotOptions:
     verdict: bool = option(False, "--verdict", help="Write above the figure whether the system is stable.")
     spread: Stated | None = option(None, "--spread", **SPREAD)
     port: str | None = option(
-        None, "--port", metavar="PORT", help="Port or node of a figure of passivity.  [default: the only one]"
+        None,
+        "--port",
+        metavar="PORT",
+        help="Port or node of a figure of passivity or z-width.  [default: the only one]",
+    )
+    environment: str | None = option(
+        None, "--environment", metavar="LAW", help="What is at the port, for z-width; see symflex contact."
     )
     at: Sequence[Stated] = option(
         (), "--at", multiple=True, metavar="F", help="Frequency of a deflection: 30Hz; may be repeated."

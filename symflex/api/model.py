@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     from symflex.codegen.export import Exporter
     from symflex.contact.coupled import CoupledStability
     from symflex.contact.passivity import PortPassivity
+    from symflex.contact.two_ports import TwoPorts
     from symflex.figures import AxesGiven
     from symflex.letters.routh import Conditions
     from symflex.loops import DynamicColocation
@@ -498,13 +499,22 @@ class Model:
             proved = stability_over(self.resolved, given, values)
             return proved if isinstance(proved, StabilityChart) else Stability(proved)
 
-    def passivity(self, port: str | None = None, *, digits: int = 12, **values: Number) -> PortPassivity:
+    @overload
+    def passivity(self, port: str | None = None, *, digits: int = 12, **values: Number) -> PortPassivity: ...
+
+    @overload
+    def passivity(self, port: tuple[str, str], *, digits: int = 12, **values: Number) -> TwoPorts: ...
+
+    def passivity(
+        self, port: str | tuple[str, str] | None = None, *, digits: int = 12, **values: Number
+    ) -> PortPassivity | TwoPorts:
         """Return whether the machine is passive at a port, proved, and if not where, with repairs.
 
         Parameters
         ----------
-        port : str, optional
-            A port of ``[ports]``, or a node; by default the only port.
+        port : str or pair of str, optional
+            A port of ``[ports]``, or a node; by default the only port. Of two ports, whether the machine is
+            passive, and absolutely stable, at both.
         digits : int
             Correct significant digits.
         **values : number or str
@@ -512,9 +522,9 @@ class Model:
 
         Returns
         -------
-        PortPassivity
+        PortPassivity or TwoPorts
             ``passive`` (``None`` where it is not decided), ``active`` bands, ``least`` real part, ``repair``
-            and ``example``.
+            and ``example``; of two ports ``passive``, ``absolutely_stable``, and ``least`` eta.
 
         Raises
         ------
@@ -549,13 +559,17 @@ class Model:
         True
         """
         from symflex.contact.passivity import find_passivity  # imports numpy
+        from symflex.contact.two_ports import find_two_ports
         from symflex.loops.over import with_values
 
-        return find_passivity(with_values(self.resolved, values), port, checked_digits(digits))
+        model = with_values(self.resolved, values)
+        if isinstance(port, tuple):
+            return find_two_ports(model, port, checked_digits(digits))
+        return find_passivity(model, port, checked_digits(digits))
 
     def contact(
         self,
-        port: str,
+        port: str | None,
         environment: str,
         *,
         over: str | tuple[str, ...] = (),
@@ -574,8 +588,8 @@ class Model:
             A port of ``[ports]``, or a node.
         environment : str
             A force over a displacement, such as ``"k_e + b_e*s + m_e*s^2"``; in circuits a voltage over a
-            current. Or a class: spring, damper, mass, spring-damper, wall. Names that the model does not
-            have become parameters.
+            current. Or a class: spring, damper, mass, spring-damper, wall; any: every passive one. Names
+            that the model does not have become parameters.
         over : str or tuple of str
             Parameters of the environment or of the model; two of them make a chart. By default the letters of
             the environment without a value, of two of which all combinations are meant.

@@ -240,7 +240,7 @@ def contact(spec: Specification, given: ContactOptions) -> int:
     two.
 
     The classes spring, damper, mass and spring-damper are the laws k_e, b_e*s, m_e*s^2 and k_e + b_e*s. With
-    wall, nothing moves at the port.
+    wall, nothing moves at the port; any is every passive environment, as 'symflex passivity' proves it.
 
     Exit code 4: something is not certified, as the output lists.
     """

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from symflex.cli.command import Specification, command_of
 from symflex.cli.reporting import PICTURES, answer, check_place, note
+from symflex.errors import refused
 from symflex.options import PassivityOptions
 
 
@@ -15,19 +16,37 @@ def passivity(spec: Specification, given: PassivityOptions) -> int:
     printed, in which the real part of its driving-point function is negative, with the least real part, the
     smallest dampers that make it passive, and a spring, a mass or both with which it is unstable.
 
+    With --port twice, both ports are judged together: whether SPEC is passive, and whether it is absolutely
+    stable (Llewellyn), which is with every pair of passive things that are not connected to each other. If
+    [analysis] has a band, the impedance that the first port shows is printed, the second free and held.
+
     --port names a port of [ports], or a node. -o draws the real part over frequency, active bands shaded.
 
     Exit code 4: it could not be decided.
     """
     from symflex.contact.passivity import driving_function, find_passivity
 
+    if len(given.ports) > 1:
+        return _two_ports(spec, given)
+    port = next(iter(given.ports), None)
     place = check_place(given.output, PICTURES) if given.output else None
     model = spec.load()
-    found = find_passivity(model, given.port, given.digits)
+    found = find_passivity(model, port, given.digits)
     answer(given.as_json, found.to_json_dict, lambda: str(found))
     if place:
         from symflex.figures import draw, save
 
-        save(draw("passivity", [driving_function(model, given.port)]), place)
+        save(draw("passivity", [driving_function(model, port)]), place)
         note(f"wrote {place}")
     return 4 if found.passive is None else 0
+
+
+def _two_ports(spec: Specification, given: PassivityOptions) -> int:
+    """Print what is proved of two ports together."""
+    from symflex.contact.two_ports import find_two_ports
+
+    if len(given.ports) > 2 or given.output:  # noqa: PLR2004
+        raise refused("--port is given once or twice; -o is for one port")
+    found = find_two_ports(spec.load(), given.ports, given.digits)
+    answer(given.as_json, found.to_json_dict, lambda: str(found))
+    return 0 if found.certified else 4

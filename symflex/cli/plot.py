@@ -12,7 +12,7 @@ from symflex.cli.command import Specification, command_of
 from symflex.cli.reporting import PICTURES, check_place, note, write
 from symflex.cli.respond import show_response
 from symflex.errors import no_such, refused
-from symflex.options import DrawOptions, PlotOptions, RespondOptions, duration, gain_ends
+from symflex.options import ContactOptions, DrawOptions, PlotOptions, RespondOptions, duration, gain_ends
 
 if TYPE_CHECKING:
     from symflex.model import Model
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 SWEEP = "sweep"
 STABILITY = "stability"
+Z_WIDTH = "z-width"
 IN_TIME = ("step", "impulse")
 FRAME = ("xlim", "ylim", "width", "font")
 
@@ -68,6 +69,9 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     passivity --port PORT draws the real part of the driving-point function of a port or node, active bands
     shaded, as 'symflex passivity' proves them.
 
+    z-width --port PORT --environment LAW --over K --over B draws for which values of two parameters the model
+    is stable with an environment, as 'symflex contact' proves it.
+
     poles_zeros --spread shades where roots lie for all combinations of values, as 'symflex roots' proves it.
 
     --band sets the frequencies of curves, and which modes are drawn. Figures in the s plane
@@ -91,7 +95,7 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     from symflex.figures import FIGURES, LOOP_FIGURES, checked_font, draw, part_shown, save
     from symflex.print.latex import width_of
 
-    if (is_over := bool(given.over) or given.kind == STABILITY) or (
+    if (is_over := bool(given.over) or given.kind in (STABILITY, Z_WIDTH)) or (
         given.record or SWEEP in (spec.path, given.kind)
     ):
         return (_plot_over if is_over else _plot_record if given.record else _plot_sweep)(spec, given)
@@ -163,15 +167,41 @@ def _plot_over(spec: Specification, given: PlotOptions, name: str = STABILITY) -
     """Draw for which values of one parameter, or of two, SPEC is stable."""
     others = ("tfs", "gain", "band", "xlim", "ylim", "phase", "modes", "until", "record")
     is_other = given.spread is not None or any(getattr(given, n) for n in others)
-    if given.kind != STABILITY or not given.over or is_other:
+    if given.kind not in (STABILITY, Z_WIDTH) or not given.over or is_other:
         hint = "as in: symflex plot FILE stability --over K --over T --box"
-        raise refused("--over is for stability, which takes no --tf, --band, --spread or ends of axes", hint)
+        raise refused(
+            "--over is for stability and z-width, which take no --tf, --band, --spread or ends of axes", hint
+        )
     from symflex.figures import checked_font, draw_over, save
     from symflex.loops.over import stability_over
 
+    if given.kind == Z_WIDTH:
+        return _plot_z_width(spec, given)
     path = check_place(given.output or f"{Path(spec.path).stem}_{name}.pdf", PICTURES)
     given = replace(given, font=(font := checked_font(given.font, path)))
     save(draw_over(stability_over(spec.load(), given.stability), given), path, font=font)
+    note(f"wrote {path}")
+    return 0
+
+
+def _plot_z_width(spec: Specification, given: PlotOptions) -> int:
+    """Draw for which values of two parameters SPEC is stable with an environment at a port."""
+    from symflex.contact.coupled import coupled_stability
+    from symflex.figures import checked_font, draw_over, save
+    from symflex.loops.chart import StabilityChart
+
+    law = given.environment
+    if law is None:
+        raise refused(
+            f"{Z_WIDTH} needs what is at the port", 'for instance --environment "m_e*s^2" --set m_e=1'
+        )
+    path = check_place(given.output or f"{Path(spec.path).stem}_{Z_WIDTH}.pdf", PICTURES)
+    given = replace(given, font=(font := checked_font(given.font, path)))
+    asked = ContactOptions(given.port, law, given.over, given.limits, given.ranges, None, None, given.resolve)
+    found = coupled_stability(spec.source(), asked, spec.settings, spec.allow_outside).answer
+    if not isinstance(found, StabilityChart):
+        raise refused(f"{Z_WIDTH} is drawn over two parameters: --over K --over B")
+    save(draw_over(found, given), path, font=font)
     note(f"wrote {path}")
     return 0
 

@@ -24,11 +24,13 @@ from flint import acb
 
 from symflex.balls import ball
 from symflex.contact.law import (
+    ANY,
     Environment,
     read_environment,
     share_name,
     with_environment,
 )
+from symflex.contact.passivity import PortPassivity, find_passivity
 from symflex.contact.port import at_port
 from symflex.errors import Diagnostic, Source, SymflexError, UsageError, refused
 from symflex.loops import of_model
@@ -56,6 +58,7 @@ LAWS = {
     "electrical": "voltage over current",
     "acoustic": "pressure over flow",
 }
+HELD = {ANY: "every passive one", "short": "nothing is left there"}  # of environments without elements
 MOTIONS = ("translation", "rotation")  # domains in which an environment is a force over a displacement
 SIZES = {
     "k": (1, 0),
@@ -69,7 +72,7 @@ SIZES = {
 }
 """Powers of the size at a frequency, and of this, that parameters of elements have."""
 Range = tuple[Fraction, Fraction | None]  # the ends of what a letter may be, in SI units; None without one
-Answer = StabilityMap | StabilityChart | SpreadStability | PoleZeroMap
+Answer = StabilityMap | StabilityChart | SpreadStability | PoleZeroMap | PortPassivity
 
 
 @dataclass(frozen=True)
@@ -87,6 +90,8 @@ class CoupledStability(Printed):
     def is_stable(self) -> bool | None:
         """Whether the machine is stable for all that was asked for; None where that is not proved."""
         answer = self.answer
+        if isinstance(answer, PortPassivity):
+            return answer.passive
         if isinstance(answer, StabilityMap):
             if any(not i.poles.is_stable for i in answer.intervals):
                 return False
@@ -111,12 +116,12 @@ class CoupledStability(Printed):
         """Whether what was asked for is decided and proved."""
         if isinstance(self.answer, PoleZeroMap):
             return self.answer.verdict.word != "unknown"
-        return self.answer.certified
+        return self.is_stable is not None if isinstance(self.answer, PortPassivity) else self.answer.certified
 
     def passages(self) -> list[Passage]:
         """Return what touches the machine, and the answer."""
         port, environment = self.environment.port, self.environment
-        law = "nothing moves" if environment.is_wall else LAWS[port.domain]
+        law = LAWS[port.domain] if environment.elements else HELD.get(environment.text, "nothing moves")
         head = f"port {port.name}, environment {environment.text} ({law})"
         if isinstance(self.answer, PoleZeroMap):
             return [Passage([head, *self._poles(self.answer)])]
@@ -147,6 +152,7 @@ class CoupledStability(Printed):
             "letters": list(self.environment.letters),
             "stable": self.is_stable,
             "certified": self.certified,
+            "reason": self.reason,
             "verdict": verdict,
             "stability": None if verdict else answer.to_json_dict(),
         }
@@ -166,7 +172,14 @@ def coupled_stability(
     """
     load = partial(load_with, allow_outside=tuple(allow_outside))
     settings, machine = settings or {}, load(source, {})
-    environment = read_environment(machine, port_named(machine, given.port), given.environment)
+    port = port_named(machine, given.port)
+    own = {n: v for n, v in settings.items() if n in {p.name for p in machine.parameters}}
+    if given.environment == ANY:
+        if given.over or given.limits or given.ranges or given.up_to is not None:
+            raise refused(f"'{ANY}' takes no --over, --range or --up-to: it has no letters")
+        passivity = find_passivity(load(source, settings), port, given.digits or 12)
+        return CoupledStability(Environment(port, ANY, ()), passivity)
+    environment = read_environment(machine, port, given.environment)
     model = load(with_environment(source, machine, environment), settings)
     free = tuple(p for p in model.parameters if p.name in environment.letters and p.value is None)
     names = tuple(given.over) or tuple(p.name for p in free)
@@ -186,13 +199,15 @@ def coupled_stability(
         exact = _exactly(model, name, ranges[name], given)
         if exact is not None:
             return CoupledStability(environment, exact)
-        own = {p.name for p in machine.parameters}
-        size = _size(load(source, {n: v for n, v in settings.items() if n in own}), environment.port)
+        size = _size(load(source, own), port)
         scale, low = _scale(environment, name, size), ranges[name][0]
         text = with_environment(source, machine, environment, {name: f"{scale} {letter.unit}".strip()})
         whole = {share_name(name): (low / (low + scale), Fraction(1))}
         found = _answer(load(text, settings), given, (*whole,), whole)
         return CoupledStability(environment, _of_letter(found, name, scale, letter.unit))
+    passivity = find_passivity(load(source, own), port, given.digits or 12, is_explained=False)
+    if passivity.passive:
+        return CoupledStability(environment, passivity, "no passive environment makes it unstable")
     for name, other in ((names[0], names[1]), (names[1], names[0])):
         alone = load(with_environment(source, machine, environment), {**settings, other: 0})
         unstable = _exactly(alone, name, ranges[name], given)

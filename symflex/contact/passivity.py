@@ -255,7 +255,7 @@ class _Machine:
         faults = [f"{UNSTABLE}: {verdict.sentence}"] if verdict.word == "unstable" else []
         reasons = [f"the poles of the machine alone: {verdict.reason}"] if verdict.right is None else []
         for pole in (p for p in self.located.poles if p.on_imaginary_axis and not p.im < 0):
-            residue = None if pole.multiplicity > 1 else _residue(bound, pole)
+            residue = None if pole.multiplicity > 1 else residue_at(bound, pole)
             if pole.multiplicity > 1:
                 faults.append(f"{DOUBLE}: {short_hertz(pole.im)} Hz")
             elif residue is not None and residue < 0:
@@ -273,7 +273,7 @@ class _Machine:
         return found.passive is True, any(f.startswith(UNSTABLE) for f in found.faults)
 
 
-def _residue(bound: BoundTransferFunction, pole: Root) -> arb | None:
+def residue_at(bound: BoundTransferFunction, pole: Root) -> arb | None:
     """Return the real part of the residue at a simple pole on the axis; None where it is not known."""
     with precision(BITS):
         if bound.is_rational:

@@ -148,7 +148,7 @@ class FunctionFarOut:
                 powers = function.powers(radius)
                 if powers is None:
                     return None
-                own = _dominant(powers[0], _turned(powers[1], self.sectors - 1), arb(radius))
+                own = _dominant(powers[0], _along_axis(powers[1]), arb(radius))
                 if own is None:
                     return None
                 lead *= own.lead**exponent
@@ -414,6 +414,17 @@ def _turned(arguments: Sequence[_Power], sector: int) -> list[_Power]:
         replace(a, unit=a.unit * (turn * ball(a.power)).exp(), is_delay=a.is_delay and sector < SECTORS)
         for a in arguments
     ]
+
+
+def _along_axis(arguments: Sequence[_Power]) -> list[_Power]:
+    """Return powers of s as powers of abs(s) on the imaginary axis, where delays neither grow nor fade."""
+    quarter = arb.pi() / 2
+
+    def turn(power: Fraction) -> acb:
+        whole = power.denominator == 1
+        return acb(0, 1) ** int(power) if whole else acb(0, quarter * ball(power)).exp()
+
+    return [replace(a, unit=a.unit * turn(a.power), is_delay=False) for a in arguments]
 
 
 def _at_infinity(kernels: KernelValues, value: Factored, radius: float) -> tuple[int, acb] | None:

@@ -1,0 +1,139 @@
+"""Two ports against dense grids of nodal equations by numpy, and conditions derived by hand."""
+
+from random import Random
+
+import numpy as np
+import pytest
+
+from symflex import Model
+from symflex.contact.two_ports import TwoPorts, find_two_ports
+
+
+def of(model: Model, *names: str) -> TwoPorts:
+    """Return what is proved at two ports."""
+    return find_two_ports(model.resolved, names or ("x", "y"))
+
+
+def teleoperator(T: float, b_y: float = 6, gain: float = 1) -> Model:
+    """Return two masses that springs hold to each other's position, T late; ``gain`` times to the left."""
+    return Model(
+        parameters={
+            "m": 0.5,
+            "M": 2,
+            "b": 4,
+            "B": b_y,
+            "k": 30,
+            "g": gain,
+            "T": {"value": T, "assume": "nonnegative"},
+        },
+        elements={
+            "master": {"type": "mass", "at": "x", "m": "m"},
+            "slave": {"type": "mass", "at": "y", "m": "M"},
+            "grip": {"type": "damper", "between": ["x", "ground"], "b": "b"},
+            "load": {"type": "damper", "between": ["y", "ground"], "b": "B"},
+            "left": {"type": "force_source", "at": "x", "f": "g*k*exp(-s*T)*y - k*x"},
+            "right": {"type": "force_source", "at": "y", "f": "k*exp(-s*T)*x - k*y"},
+        },
+        inputs={"F": {"force": "x"}},
+        outputs={"Y": "y"},
+    )
+
+
+def test_a_delay_is_paid_for_by_friction() -> None:
+    # Z11 = m s + b + k/s and Z12 = -k exp(-s T)/s: b B >= (k sin(omega T)/omega)^2, the most at 0.
+    limit = np.sqrt(4 * 6) / 30
+    found = of(teleoperator(0.9 * limit))
+    assert found.passive is True and found.absolutely_stable is True and found.is_reciprocal
+    found = of(teleoperator(1.5 * limit))
+    assert found.passive is False and found.absolutely_stable is False
+    omega = float(found.active[0].high.mid())
+    assert 30 * np.sin(omega * 1.5 * limit) / omega == pytest.approx(np.sqrt(24))
+
+
+def test_what_is_not_reciprocal_may_be_absolutely_stable_and_active() -> None:
+    # Without delay eta = (2 b B + g k^2/omega^2)/(g k^2/omega^2) > 1, while with g = 9 the Hermitian part
+    # 4 b B - (8 k/omega)^2 is negative at low frequencies.
+    found = of(teleoperator(0, gain=0.25))
+    assert not found.is_reciprocal
+    assert found.passive is False
+    assert found.absolutely_stable is True
+    edge = float(found.active[-1].high.mid())
+    assert edge == pytest.approx(0.75 * 30 / (2 * np.sqrt(24)))
+
+
+def test_a_network_of_springs_and_dampers_is_passive_by_energy() -> None:
+    model = Model(
+        parameters={"m": 1, "k": 2, "b": 3},
+        elements={
+            "left": {"type": "mass", "at": "x", "m": "m"},
+            "right": {"type": "mass", "at": "y", "m": "m"},
+            "spring": {"type": "spring", "between": ["x", "y"], "k": "k"},
+            "damper": {"type": "damper", "between": ["y", "ground"], "b": "b"},
+        },
+        inputs={"F": {"force": "x"}},
+        outputs={"Y": "y"},
+    )
+    found = of(model)
+    assert found.passive is True and found.proof
+    assert found.to_json_dict()["absolutely_stable"] is True
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_random_machines_are_judged_as_a_dense_grid_judges_them(seed: int) -> None:
+    draw = Random(seed)
+    m, b, k = (np.array([10 ** draw.uniform(-1, 1) for _ in range(3)]) for _ in range(3))
+    k_1, k_2 = (10 ** draw.uniform(0, 2) for _ in range(2))
+    gain, rate = draw.uniform(-2, 2), draw.uniform(-0.5, 0.5)
+    nodes, names = ("x", "z", "y"), ("x", "y")
+    elements: dict[str, object] = {}
+    for i, node in enumerate(nodes):
+        elements |= {
+            f"m{i}": {"type": "mass", "at": node, "m": float(m[i])},
+            f"b{i}": {"type": "damper", "between": [node, "ground"], "b": float(b[i])},
+            f"k{i}": {"type": "spring", "between": [node, "ground"], "k": float(k[i])},
+        }
+    elements |= {
+        "one": {"type": "spring", "between": ["x", "z"], "k": k_1},
+        "two": {"type": "spring", "between": ["z", "y"], "k": k_2},
+        "act": {"type": "force_source", "at": "y", "f": "g*x + h*s*x"},
+    }
+    parameters = {name: {"value": x, "assume": "real"} for name, x in (("g", gain), ("h", rate))}
+    model = Model(parameters=parameters, elements=elements, inputs={"F": {"force": "x"}}, outputs={"Y": "y"})
+    found = of(model, *names)
+
+    springs = np.array([[k_1, -k_1, 0], [-k_1, k_1 + k_2, -k_2], [-gain, -k_2, k_2]])
+    stiffness = np.diag(k) + springs
+    damping = np.diag(b)
+    damping[2, 0] = -rate
+    inverse = np.diag(1 / m)
+    companion = np.block([[np.zeros((3, 3)), np.eye(3)], [-inverse @ stiffness, -inverse @ damping]])
+    is_stable = bool((np.linalg.eigvals(companion).real < 0).all())
+    omega = np.geomspace(1e-3, 1e4, 20_001)
+    s = 1j * omega[:, None, None]
+    y = np.linalg.inv(np.diag(m) * s**2 + damping * s + stiffness)[:, [0, 2]][:, :, [0, 2]] * s
+    least = np.linalg.eigvalsh(y + y.conj().transpose(0, 2, 1))[:, 0]
+    size = np.abs(y).max(axis=(1, 2))
+    real = y.real
+    eta = (2 * real[:, 0, 0] * real[:, 1, 1] - (y[:, 0, 1] * y[:, 1, 0]).real) / abs(y[:, 0, 1] * y[:, 1, 0])
+    is_passive = is_stable and bool((least > -1e-9 * size).all())
+    is_safe = is_stable and bool(
+        (real[:, 0, 0] > 0).all() and (real[:, 1, 1] > 0).all() and (eta >= 1 - 1e-9).all()
+    )
+    assert found.passive is is_passive
+    assert found.absolutely_stable is is_safe
+    if is_safe and found.least is not None:
+        assert float(found.least.value.mid()) == pytest.approx(eta.min(), rel=1e-4)
+
+
+def test_waves_that_a_controller_drives_are_not_decided() -> None:
+    model = Model(
+        parameters={"EA": 1, "rhoA": 1, "l": 1, "K": 1},
+        elements={
+            "rod": {"type": "rod", "between": ["x", "y"], "EA": "EA", "rhoA": "rhoA", "l": "l"},
+            "act": {"type": "force_source", "at": "x", "f": "-K*y"},
+        },
+        inputs={"F": {"force": "x"}},
+        outputs={"Y": "y"},
+    )
+    found = of(model)
+    assert found.passive is None and found.reasons
