@@ -28,7 +28,7 @@ from symflex.matrices.transfer_matrix import TransferMatrix, joined_ring, one_ta
 from symflex.print.forms import print_part
 from symflex.print.forms.printed import PrintedForm
 from symflex.print.read_back import read_back
-from symflex.transfer import TransferFunction, bind
+from symflex.transfer import AnyTransferFunction, TransferFunction, bind
 from symflex.transfer.lowest_terms import cancel
 
 Gains = tuple[tuple[TransferFunction, ...], ...]  # constants, a row per output
@@ -65,6 +65,8 @@ class Interaction:
 
 def interaction(matrix: TransferMatrix) -> Interaction:
     """Return static gains, static decoupling and relative gains; SF237, SF902 as of an inverse."""
+    for tf in matrix.each:
+        _check_letters(tf)
     turned = inverse(matrix)
     relative = [
         [_product(g, turned.pairs[j][i]) for j, g in enumerate(row)] for i, row in enumerate(matrix.pairs)
@@ -112,14 +114,19 @@ def _at_rest(pairs: Sequence[Sequence[object]]) -> Gains | None:
     return tuple(rows)
 
 
+def _check_letters(tf: AnyTransferFunction) -> None:
+    """Return where a function has a static gain in letters, which beams and roots of s have not."""
+    if tf.model.root is not None or any(k.function != EXPONENTIAL for k in tf.kernels.kernels):
+        message = f"the static gain of {tf.name} in letters is not available here: it is no rational function"
+        raise ModelError(Diagnostic("SF910", message, None, "dcgain() has its value, --limits its letters"))
+
+
 def value_at_rest(tf: TransferFunction) -> TransferFunction | None:
     """Return a function's value at s = 0, None where that is infinite.
 
     Raises SF910 for beams, roots of s, and where delays leave 0/0.
     """
-    if tf.model.root is not None or any(k.function != EXPONENTIAL for k in tf.kernels.kernels):
-        message = f"the static gain of {tf.name} in letters is not available here: it is no rational function"
-        raise ModelError(Diagnostic("SF910", message, None, "dcgain() has its value, --limits its letters"))
+    _check_letters(tf)
     if tf.is_zero:
         return replace(tf, closed=None, reduced=tf.ratio, hidden=())
     ring, ratio = tf.ratio.ring, Factored.number(tf.ratio.ring, tf.ratio.unit)

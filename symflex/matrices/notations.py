@@ -15,6 +15,7 @@ from textwrap import wrap
 from typing import TYPE_CHECKING, Final
 
 from symflex.expressions import Expression, format_expression, is_number, names_in, number, quotient, sum_of
+from symflex.matrices.colocated import colocated
 from symflex.matrices.interaction import Gains, Interaction
 from symflex.matrices.printed import MatrixForm
 from symflex.matrices.transfer_matrix import TransferMatrix
@@ -56,7 +57,22 @@ def matrix_text(matrix: TransferMatrix, form: MatrixForm, width: int = WIDTH) ->
     if named:
         lines += [*hanging(f"{INDENT}{below}(s) = ", form.den, width), ""]
     lines += _where_lines(form, width)
-    return "\n".join([*lines, *_quantities(matrix, width)])
+    return "\n".join([*lines, *_quantities(matrix, width), *_colocated(matrix, width)])
+
+
+def _colocated(matrix: TransferMatrix, width: int) -> list[str]:
+    """Return a line that names the colocated pairs, none where there is at most one function."""
+    if matrix.shape == (1, 1) or not (pairs := _colocated_pairs(matrix)):
+        return []
+    said = f"colocated: {', '.join('/'.join(pair) for pair in pairs)}"
+    return wrap(said, width, initial_indent=INDENT, subsequent_indent=INDENT * 2)
+
+
+def _colocated_pairs(matrix: TransferMatrix) -> list[tuple[str, str]]:
+    if matrix.model.imposed:
+        return []
+    every = {(tf.output.name, tf.input.name) for tf in matrix.each}
+    return [pair for pair in colocated(matrix.model) if pair in every]
 
 
 def _free(naming: Naming, *stems: str) -> str:
@@ -205,6 +221,7 @@ def matrix_json(matrix: TransferMatrix, form: MatrixForm) -> dict[str, object]:
         "units": [[tf.unit for tf in row] for row in matrix.pairs],
         "where": [[name, format_expression(e)] for name, e in form.where],
         "laws": [[name, format_expression(law)] for name, law in form.laws],
+        "colocated": [list(pair) for pair in _colocated_pairs(matrix)],
         "latex": matrix_latex(matrix, form),
         "closed": [[format_expression(a), format_expression(b)] for a, b in form.closed],
     }

@@ -28,6 +28,7 @@ def test_text_has_the_matrix_beside_its_fraction_and_the_denominator_below() -> 
         "  d(s) = (m_1*s^2 + k_1)*(m_2*s^2 + k_2) + m_2*k_2*s^2",
         "",
         "  receptance [m/N]",
+        "  colocated: X_1/F_1, X_2/F_2",
     ]
 
 
