@@ -46,9 +46,12 @@ if TYPE_CHECKING:
     from symflex.data.fitting.parameter_fit import ParameterFit
     from symflex.data.measurement import MeasuredResponse
     from symflex.equations import Equations
+    from symflex.loops.chart import StabilityChart
+    from symflex.loops.stability_map import StabilityMap
     from symflex.model import ModelParameter
-    from symflex.options import FitOptions
+    from symflex.options import FitOptions, StabilityOptions
     from symflex.roots import Budget, PoleZeroMap, Region
+    from symflex.transfer import Given
 
 FIT_SAMPLES = 40  # frequencies at which a program that is fitted with is compared with ball arithmetic
 
@@ -184,6 +187,20 @@ def _machine(
     }
     every = tuple(functions[pair] for pair in pairs)
     return Machine(path, every, free, numbers, told, _derived_values(model, names))
+
+
+def stability(
+    model: Model, given: StabilityOptions, values: Mapping[str, Given] | None = None
+) -> StabilityMap | StabilityChart:
+    """Return for which values of a gain, or of any parameters, a model is stable, sampled or not."""
+    if model.sampled is not None:
+        from symflex.analysis.sampled_loop import sampled_stability
+
+        return sampled_stability(model, given, values)
+    from symflex.loops import of_model, over
+
+    find = over.stability_over if given.over else of_model.stability
+    return find(model, given, values)
 
 
 def _derived_values(model: Model, names: Sequence[str]) -> tuple[Derived, ...]:

@@ -107,7 +107,7 @@ class SampledTransferFunction:
 
 
 @dataclass(frozen=True, eq=False)
-class _Delayed:
+class Delayed:
     """A quotient of polynomials times a delay."""
 
     numerator: acb_poly
@@ -115,16 +115,17 @@ class _Delayed:
 
 
 @dataclass(frozen=True, eq=False)
-class _Continuous:
+class Continuous:
     """What is sampled: terms with a common denominator, in balls of the current precision."""
 
-    terms: tuple[_Delayed, ...]
+    terms: tuple[Delayed, ...]
     denominator: acb_poly
     poles: tuple[Root, ...]
     zeros: tuple[Root, ...]  # of the only term; empty where there are several
 
     @property
     def order(self) -> int:
+        """The degree of the denominator."""
         return int(self.denominator.degree())
 
 
@@ -170,7 +171,7 @@ def sampled_transfer_function(bound: BoundTransferFunction, sampling: Sampling) 
 def _sampled(bound: BoundTransferFunction, sampling: Sampling) -> SampledTransferFunction:
     spend()
     bits = current_bits()
-    given = _continuous(bound, bits * FIRST_DIGITS // (2 * bits_for_digits(FIRST_DIGITS)), bits)
+    given = continuous_parts(bound, bits * FIRST_DIGITS // (2 * bits_for_digits(FIRST_DIGITS)), bits)
     numerator, denominator, poles, zeros, late, size = MAPS[sampling.method](bound, given, sampling)
     above, below = _told(numerator, size), _told(denominator)
     zeros = _roots_of(above) if zeros is None else zeros
@@ -184,13 +185,14 @@ def _check(bound: BoundTransferFunction, difference: acb, size: acb) -> None:
         raise InternalError(Diagnostic("SF991", message, None, REPORT))
 
 
-def _continuous(bound: BoundTransferFunction, digits: int, bits: int) -> _Continuous:
+def continuous_parts(bound: BoundTransferFunction, digits: int, bits: int) -> Continuous:
+    """Return what is sampled, with poles to so many digits; SF235, SF236 where that fails."""
     if bound.is_rational:
         sides = [[(f, e * sign) for f, e in bound.ratio.factors if e * sign > 0] for sign in (1, -1)]
         zeros, poles = (find_polynomial_roots(problem_of(bound, side), digits) for side in sides)
         num, den = EnclosedQuotient.of(bound, bits).multiplied_out()
         _check_order(bound, num, den)
-        return _Continuous((_Delayed(num, arb(0)),), den, poles, zeros)
+        return Continuous((Delayed(num, arb(0)),), den, poles, zeros)
     quotient = delayed_quotient(bound)
     if quotient is None:
         raise not_rational(bound.name)
@@ -209,10 +211,10 @@ def _continuous(bound: BoundTransferFunction, digits: int, bits: int) -> _Contin
         if late < 0:
             message = f"{bound.name} looks ahead: its output would come before its input"
             raise ModelError(Diagnostic("SF235", message, None, "make every delay zero or positive"))
-        terms.append(_Delayed(num, late))
+        terms.append(Delayed(num, late))
     exact = [durations.exact(p) for p in (below, *quotient.above.values())]
     roots = [find_polynomial_roots(RootProblem(((p, 1),)), digits) if p.degree > 0 else () for p in exact[:2]]
-    return _Continuous(tuple(terms), den, roots[0], roots[1] if len(terms) == 1 else ())
+    return Continuous(tuple(terms), den, roots[0], roots[1] if len(terms) == 1 else ())
 
 
 def _check_order(bound: BoundTransferFunction, num: acb_poly, den: acb_poly) -> None:
@@ -227,7 +229,7 @@ Found = tuple["list[arb]", "list[arb]", "tuple[acb, ...]", "tuple[acb, ...] | No
 which a coefficient of the numerator may be nothing."""
 
 
-def _held(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling) -> Found:
+def _held(bound: BoundTransferFunction, given: Continuous, sampling: Sampling) -> Found:
     """Return the function whose step response is that of the given one at samples."""
     poles = _poles_at_samples(given.poles, sampling)
     below = monic(poles)
@@ -235,7 +237,7 @@ def _held(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling) 
     size = arb(0)
     parts: list[tuple[int, list[arb]]] = []
     for term in given.terms:
-        delay = _delay(term.late, sampling)
+        delay = whole_delay(term.late, sampling)
         samples = ceil(delay / sampling.sample)
         ahead = samples * sampling.sample - delay
         quotient = EnclosedQuotient(((term.numerator, 1),), ((given.denominator, 1),), acb(1))
@@ -279,7 +281,7 @@ def _poles_at_samples(poles: Sequence[Root], sampling: Sampling) -> tuple[acb, .
     return tuple(z for z, count in found for _ in range(count))
 
 
-def _tustin(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling) -> Found:
+def _tustin(bound: BoundTransferFunction, given: Continuous, sampling: Sampling) -> Found:
     """Return the function of s = k (z - 1)/(z + 1), where s - r is ((k - r) z - (k + r))/(z + 1)."""
     late = _only_whole(bound, given, sampling)
     k = acb(sampling.rate)
@@ -301,7 +303,7 @@ def _tustin(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling
     return _product(gain, zeros, poles, late)
 
 
-def _matched(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling) -> Found:
+def _matched(bound: BoundTransferFunction, given: Continuous, sampling: Sampling) -> Found:
     """Return the function whose roots are exp(s h), and which is the same where s is small.
 
     Of zeros at infinity all but one come to z = -1: the one left is the sample that computing may take.
@@ -328,7 +330,7 @@ def _product(gain: acb, zeros: tuple[acb, ...], poles: tuple[acb, ...], late: in
     return [arb(0)] * (len(poles) - len(zeros)) + above, monic(poles), poles, zeros, late, arb(0)
 
 
-MAPS: dict[str, Callable[[BoundTransferFunction, _Continuous, Sampling], Found]] = {
+MAPS: dict[str, Callable[[BoundTransferFunction, Continuous, Sampling], Found]] = {
     "zoh": _held,
     "tustin": _tustin,
     "matched": _matched,
@@ -339,14 +341,14 @@ def delay_of(bound: BoundTransferFunction, sampling: Sampling) -> Fraction:
     """Return the delay [s] of a function that is rational otherwise; errors as of sampling it."""
     bits = 2 * bits_for_digits(FIRST_DIGITS)
     with precision(bits):
-        given = _continuous(without_lengths_of_zero(bound), FIRST_DIGITS, bits)
+        given = continuous_parts(without_lengths_of_zero(bound), FIRST_DIGITS, bits)
         if len(given.terms) > 1:
             message = f"{bound.name} is a sum of delays: its state equations are not those of the model"
             raise ModelError(Diagnostic("SF235", message, None, "export code with --to c or numpy"))
-        return _delay(given.terms[0].late, sampling)
+        return whole_delay(given.terms[0].late, sampling)
 
 
-def _delay(late: arb, sampling: Sampling) -> Fraction:
+def whole_delay(late: arb, sampling: Sampling) -> Fraction:
     """Return a delay as a number; one that no precision tells from whole samples is so many."""
     ratio = late / sampling.seconds
     near = round(float(ratio.mid()))
@@ -355,13 +357,13 @@ def _delay(late: arb, sampling: Sampling) -> Fraction:
     return delay
 
 
-def _only_whole(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling) -> int:
+def _only_whole(bound: BoundTransferFunction, given: Continuous, sampling: Sampling) -> int:
     if len(given.terms) > 1:
         raise refused(f"{bound.name} is a sum of delays, which '{sampling.method}' cannot handle", "take zoh")
-    return int(_delay(given.terms[0].late, sampling) / sampling.sample)
+    return int(whole_delay(given.terms[0].late, sampling) / sampling.sample)
 
 
-def _leading(given: _Continuous) -> acb:
+def _leading(given: Continuous) -> acb:
     above = given.terms[0].numerator
     return above[above.degree()] / given.denominator[given.order]
 

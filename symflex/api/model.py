@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from symflex import model as model_layer
+    from symflex.analysis.sampled_loop import SampledPoles
     from symflex.api.live import LivePage
     from symflex.api.sweep import Sweep
     from symflex.api.transfer_matrix import TransferMatrix
@@ -107,6 +108,7 @@ class Model:
         operating_point: Table | None = None,
         energy: Table | None = None,
         blocks: Table | None = None,
+        sampled: Table | None = None,
         fields: Table | None = None,
         inputs: Table | None = None,
         outputs: Table | None = None,
@@ -482,9 +484,7 @@ class Model:
         >>> model.stability(spread="50 %", T=1.0)
         <SpreadStability of 2 parameters: unstable>
         """
-        from symflex.loops.chart import StabilityChart
-        from symflex.loops.of_model import stability  # imports numpy
-        from symflex.loops.over import stability_over
+        from symflex.loops.chart import StabilityChart  # imports numpy
         from symflex.loops.spread import stability_spread
 
         names: tuple[str, ...] = tuple(over) if not isinstance(over, str) else (over,) if over else ()
@@ -494,9 +494,7 @@ class Model:
         with budget_of(budget).besides().entered():
             if spread is not None:
                 return stability_spread(self.resolved, given, values)
-            if not names:
-                return Stability(stability(self.resolved, given, values))
-            proved = stability_over(self.resolved, given, values)
+            proved = pipeline.stability(self.resolved, given, values)
             return proved if isinstance(proved, StabilityChart) else Stability(proved)
 
     @overload
@@ -635,6 +633,34 @@ class Model:
         with budget_of(budget).besides().entered():
             return coupled_stability(self._source, given, {**self._values, **values}, self._outside)
 
+    def sampled_poles(self, digits: int = 15, **values: Number) -> SampledPoles:
+        """Return the poles of the loop that a sampled controller closes, in z and as s = ln(z)/T.
+
+        Parameters
+        ----------
+        digits : int
+            Significant digits.
+        **values : number or str
+            In place of declared values, as for :meth:`TransferFunction.bind`.
+
+        Raises
+        ------
+        ModelError
+            SF260 without ``[sampled]``, or where it cannot be read as a loop.
+
+        Examples
+        --------
+        >>> model = Model(
+        ...     parameters={"K": 1, "T": 0.5}, blocks={"C": "K*z/z"}, sampled={"period": "T"},
+        ...     signals={"y": "C*(r - y)/s"}, inputs={"r": {}}, outputs={"Y": "y"},
+        ... )
+        >>> model.sampled_poles()  # z = 1 - K*T
+        <SampledPoles: 1 poles, stable>
+        """
+        from symflex.analysis.sampled_loop import sampled_poles  # imports numpy
+
+        return sampled_poles(self.resolved, checked_digits(digits), values)
+
     def conditions(
         self, of: str = "poles", tf: str | None = None, *, over: tuple[str, str] | None = None
     ) -> Conditions:
@@ -696,14 +722,13 @@ class Model:
         ['stable', '2 unstable']
         """
         from symflex.figures import draw_over  # imports matplotlib
-        from symflex.loops.over import stability_over
 
         names = (over,) if isinstance(over, str) else tuple(over)
         each = tuple((name, *ends) for name, ends in (ranges or {}).items())
         given = PlotOptions(
             "stability", over=names, ranges=each, resolve=resolve, box=box, width=width, font=font
         )
-        return draw_over(stability_over(self.resolved, given.stability, values), given, ax)
+        return draw_over(pipeline.stability(self.resolved, given.stability, values), given, ax)
 
     def locus(
         self,

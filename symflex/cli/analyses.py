@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from symflex.loops.clouds import RootCloud
     from symflex.loops.spread import SpreadStability
     from symflex.loops.stability_map import StabilityMap
+    from symflex.model import Model
     from symflex.roots import Region
 
 
@@ -67,6 +68,8 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     # However short the time is, what is sought is told, and how many roots there are.
     with entered_budget().at_least(DERIVING).entered():
         model = spec.load()
+        if model.sampled is not None:
+            return _sampled_roots(model, given)
         pair = first_pair(model, given.tf, "showing")
         shown = (asked := given.digits or model.analysis.digits) or 15
         (bound,) = pipeline.derive_for_roots(model, [pair], is_named=bool(given.sensitivity) or given.explain)
@@ -113,9 +116,25 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     else:
         every = [roots_text(located, asked or SHORT_DIGITS, width), *(told for _, told in more.values())]
         say("\n".join(every[given.format == "latex" :]))
-    is_decided = all(m.status != "undecided" for m in moved) and all(c.count is not None for c in clouds)
-    is_certified = located.certificate.certified and not (given.strict and located.excluded)
-    return 5 if is_over else 0 if is_decided and is_certified else 4
+    is_decided = (
+        all(m.status != "undecided" for m in moved)
+        and all(c.count is not None for c in clouds)
+        and located.certificate.certified
+        and not (given.strict and located.excluded)
+    )
+    return 5 if is_over else 0 if is_decided else 4
+
+
+def _sampled_roots(model: Model, given: RootsOptions) -> int:
+    """Print the poles of a sampled loop."""
+    from symflex.analysis.sampled_loop import sampled_poles
+    from symflex.model.sampled import refused as refused_sampled
+
+    if vars(given) != vars(RootsOptions(digits=given.digits, as_json=given.as_json)):
+        raise refused_sampled(model)
+    found = sampled_poles(model, given.digits)
+    answer(given.as_json, found.to_json_dict, lambda: str(found))
+    return 0 if found.certified else 4
 
 
 def _check_roots(given: RootsOptions) -> None:
@@ -200,9 +219,8 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
     Exit code 4: something is not certified, as the output lists. Undamped structures have poles all
     along the axis; these are counted up to a frequency, which is printed.
     """
+    from symflex import pipeline
     from symflex.cli.progress import ProgressBar
-    from symflex.loops import of_model
-    from symflex.loops.over import stability_over
     from symflex.loops.spread import stability_spread
 
     model = spec.load()
@@ -225,7 +243,7 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
         if given.spread is not None:
             stable = stability_spread(model, given)
         else:
-            stable = stability_over(model, given) if given.over else of_model.stability(model, given)
+            stable = pipeline.stability(model, given)
     answer(given.as_json, stable.to_json_dict, lambda: str(stable))
     return 0 if stable.certified else 4
 

@@ -81,7 +81,7 @@ def check(spec: Specification, given: CheckOptions) -> int:
         emit_json({"schema": "symflex.check/1", "ok": True, **document})
         return code
     show(warnings)
-    symbolic = [p.name for p in model.parameters if p.value is None]
+    symbolic = [p.name for p in model.settable if p.value is None]
     counts = ", ".join(
         f"{len(group)} {word}{'' if len(group) == 1 else 's'}"
         for group, word in (

@@ -172,14 +172,14 @@ def _plot_over(spec: Specification, given: PlotOptions, name: str = STABILITY) -
         raise refused(
             "--over is for stability and z-width, which take no --tf, --band, --spread or ends of axes", hint
         )
+    from symflex import pipeline
     from symflex.figures import checked_font, draw_over, save
-    from symflex.loops.over import stability_over
 
     if given.kind == Z_WIDTH:
         return _plot_z_width(spec, given)
     path = check_place(given.output or f"{Path(spec.path).stem}_{name}.pdf", PICTURES)
     given = replace(given, font=(font := checked_font(given.font, path)))
-    save(draw_over(stability_over(spec.load(), given.stability), given), path, font=font)
+    save(draw_over(pipeline.stability(spec.load(), given.stability), given), path, font=font)
     note(f"wrote {path}")
     return 0
 

@@ -100,6 +100,10 @@ def assemble(
     SF910 a function of s; with positions, all at once; BudgetError: SF502 when there are more names or
     more unknowns than can be computed with exactly.
     """
+    if model.sampled is not None:
+        from symflex.model.sampled import refused  # few models have one
+
+        raise refused(model)
     constants = _constant_functions(model)
     count = len(model.parameters) + len(model.definitions) + len(constants)
     most = SPARSE_LIMIT if is_sparse else GENERATOR_LIMIT

@@ -30,9 +30,11 @@ from symflex.model import ExactValue, Model
 from symflex.roots.distributed.far_out import right_tail
 from symflex.roots.functions.characteristic import CharacteristicValues
 from symflex.roots.functions.exponential_values import Place, Summed, sums_of
+from symflex.roots.locate import locate
 from symflex.roots.passivity import energy_proof
-from symflex.roots.pole_zero_map import WITHOUT_END
-from symflex.transfer import BoundTransferFunction, TransferFunction
+from symflex.roots.pole_zero_map import WITHOUT_END, PoleZeroMap
+from symflex.roots.region import Modes
+from symflex.transfer import BoundTransferFunction, TransferFunction, bind
 from symflex.transfer.enclose import constant_tangent, enclosure, first_order
 from symflex.transfer.enclose_kernels import KernelValues
 from symflex.transfer.mirrored import has_complex_waves, times_image
@@ -42,6 +44,7 @@ BITS = 64  # precision of values on boxes, which are far wider
 LOWEST = 1e-6  # radius from which one is sought beyond which no root is on the right [rad/s]
 OCTAVES = 24  # pieces of the axis at first, each half as high as the next; the lowest begins at 0
 MOST_OPEN = 64  # pieces left open after which others stay as they are: halves of the box leave fewer
+COUNT_DIGITS = 10  # digits of poles of which only the number is asked for
 NEARLY = 1 / 8  # share of a value that a box may leave and this still be as good as 0
 
 Ends = tuple[Fraction, Fraction]
@@ -268,9 +271,19 @@ class CharacteristicFunction:
     def _summed(self) -> dict[int, Summed | None]:
         return {}
 
+    def is_mirrored_at(self, box: Box, piece: Piece) -> bool:
+        """Tell whether a piece of the axis may hold a root that is its own conjugate, and crosses alone."""
+        return not piece[0]
+
+    def located(self, point: Sequence[Fraction | ExactValue], modes: int = 1) -> PoleZeroMap:
+        """Return the poles at one point, of a distributed model so many modes."""
+        bound = bind(self.tf, dict(zip(self.names, point, strict=True)))
+        return locate(bound, None if bound.is_rational else Modes(modes), COUNT_DIGITS, with_zeros=False)
+
     def bound_in(self, tf: TransferFunction, box: Box) -> BoundTransferFunction:
         """Return a transfer function whose parameters lie anywhere in a box."""
         fixed = tuple((name, _enclosed(ends)) for name, ends in zip(self.names, box, strict=True))
+        fixed += tf.fixed
         return BoundTransferFunction(tf, self.values, tf.ratio, tf.hidden, tf.kernels, fixed=fixed)
 
 

@@ -32,11 +32,8 @@ from symflex.loops.up_to import BoxesUpTo
 from symflex.model import ExactValue, ModelParameter
 from symflex.print.notebook import Printed
 from symflex.print.text import INDENT, Passage
-from symflex.roots.locate import locate
-from symflex.roots.pole_zero_map import WITHOUT_END, PoleZeroMap, StabilityVerdict
-from symflex.roots.region import Modes
+from symflex.roots.pole_zero_map import WITHOUT_END, StabilityVerdict
 from symflex.roots.root import count_roots
-from symflex.transfer import bind
 
 SCHEMA = "symflex.stability_chart/1"
 SHOWN = 12  # regions in print; the others are in the JSON
@@ -48,7 +45,6 @@ SMALLEST = 5e-4  # share of the smallest region in which poles are counted; othe
 ROUNDING = 1e-12  # far more than doubles round of a few numbers of the size of one
 HOPELESS = 256  # boxes after which the search ends if poles have no bound in any
 MIXED = -2  # mark of boxes whose cells differ
-COUNT_DIGITS = 10  # digits of poles of which only the number is asked for
 Word = Literal["stable", "marginal", "unstable", "undecided"]
 
 
@@ -394,20 +390,12 @@ def _regions(
     return cells, tuple(regions)
 
 
-def located_at(
-    function: CharacteristicFunction, point: Sequence[Fraction | ExactValue], modes: int = 1
-) -> PoleZeroMap:
-    """Return the poles at one point, of a distributed model so many modes."""
-    bound = bind(function.tf, dict(zip(function.names, point, strict=True)))
-    return locate(bound, None if bound.is_rational else Modes(modes), COUNT_DIGITS, with_zeros=False)
-
-
 def count_at(
     function: CharacteristicFunction, point: Sequence[Fraction | ExactValue]
 ) -> tuple[StabilityVerdict, int]:
     """Return what holds at one point, as ``symflex roots`` says it, and how many poles lie on the axis."""
     try:
-        located = located_at(function, point)
+        located = function.located(point)
     except SymflexError as error:
         return StabilityVerdict("unknown", None, False, error.diagnostics[0].message), 0
     axis = count_roots([root for root in located.all_poles if root.on_imaginary_axis])

@@ -72,11 +72,11 @@ def stability_over(
     range that is needed or empty; ModelError: SF801 if no pole depends on a parameter, or it cannot be
     followed; SF501, SF502 if the characteristic function is too large.
     """
-    names = _checked_names(given)
+    names = checked_names(given)
     up_to = None if given.up_to is None else 2 * pi * highest_frequency(given.up_to)
     model = with_values(model, values)
     parameters = [pick_gain(model.parameters, name) for name in names]
-    limits = tuple(_limits(model, p, given) for p in parameters)
+    limits = tuple(limits_of(model, p, given) for p in parameters)
     nominal = [None if p.value is None else p.value.nearly for p in parameters]
     digits = given.digits or model.analysis.digits or 15
     exact = (
@@ -115,7 +115,7 @@ def stability_over(
     return exact.of_parameter if exact is not None and exact.intervals else halved
 
 
-def _checked_names(given: StabilityOptions) -> tuple[str, ...]:
+def checked_names(given: StabilityOptions) -> tuple[str, ...]:
     """Return the parameters that are asked for; SF902 for too many, or options that apply to none."""
     names = tuple(given.over)
     if len(names) > 2 or len(set(names)) < len(names):  # noqa: PLR2004 (a chart has two axes)
@@ -180,7 +180,7 @@ def _sweep(name: str) -> str:
     return f"follow its poles by value: symflex sweep FILE --over {name}=FROM:TO:lin:20"
 
 
-def _limits(model: Model, parameter: ModelParameter, given: StabilityOptions) -> Ends:
+def limits_of(model: Model, parameter: ModelParameter, given: StabilityOptions) -> Ends:
     """Return a parameter's range, asked for, declared, or about its value; from 0 if no part has it."""
     name = parameter.name
     of_all = given.limits if len(given.over) == 1 else None
@@ -435,7 +435,8 @@ def pair_that_crosses(
     first, last = min(gap.box[0][0] for gap in gaps), max(gap.box[0][1] for gap in gaps)
     low, high = min(a for _, (a, _) in pieces), max(b for _, (_, b) in pieces)
     wide = (first - ABOUT * (last - first), last + ABOUT * (last - first))
-    if not (around[0] < wide[0] and wide[1] < around[1] and low and all(gap.is_bounded for gap in gaps)):
+    is_inside = around[0] < wide[0] and wide[1] < around[1] and all(gap.is_bounded for gap in gaps)
+    if not is_inside or function.is_mirrored_at((wide,), (low, high + ABOUT * (high - low))):
         return 0
     with precision(bits):
         omega, rise = acb(0, ball((low + high) / 2)), ball(ABOUT * (high - low))

@@ -24,7 +24,7 @@ from flint import acb
 from symflex.balls import Branching, Open, branch, precision
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError, UsageError
 from symflex.loops.boxes import BITS, Box, CharacteristicFunction, OpenBox
-from symflex.loops.chart import Word, count_at, located_at
+from symflex.loops.chart import Word, count_at
 from symflex.loops.over import characteristic, with_values
 from symflex.loops.stability_map import SCHEMA
 from symflex.model import Model, ModelParameter, spread_box
@@ -136,7 +136,7 @@ def find_spread(
     units, counted_in = (p.unit for p in parameters), (p.counted_in for p in parameters)
     result = SpreadStability(function.names, tuple(units), tuple(counted_in), box, "undecided")
     try:
-        located = located_at(function, middle_of(box), FOLLOWED)
+        located = function.located(middle_of(box), FOLLOWED)
         if located.verdict.word != "stable":
             return _at(result, located.verdict, middle_of(box))
         poles = [complex(root) for root in located.all_poles if not root.im < 0]

@@ -21,8 +21,8 @@ from symflex.quantities import looks_like_quantity
 
 FORMAT_VERSION = 1
 SECTIONS = tuple(
-    "parameters definitions elements inputs outputs signals equations operating_point energy blocks fields "
-    "ports published notation tables analysis figures drawing".split()
+    "parameters definitions elements inputs outputs ports signals equations operating_point energy blocks "
+    "sampled fields published notation tables analysis figures drawing".split()
 )
 TOP_KEYS = ("symflex", "title", "source", "doc", *SECTIONS)
 CONSEQUENCES = ("SF210", "SF218")  # what is noted of a name that was lost with a mistake elsewhere

@@ -47,6 +47,7 @@ class ExactValue:
 
 ONE: Final = ExactValue(Fraction(1))
 J: Final = ExactValue(Fraction(1), is_imaginary=True)
+Z: Final = "z"  # the variable of sampled blocks: ahead by one sample
 IMAGINARY: Final = "j"  # the imaginary unit, unless the model gives this name another meaning
 FOUND_BITS: Final = 256  # of the value of a parameter that was solved for
 PAIRS_SHOWN: Final = 6  # number of transfer functions that a message lists
@@ -285,6 +286,17 @@ class PlacedBlock:
 
 
 @dataclass(frozen=True, slots=True)
+class SampledBlocks:
+    """Blocks that a computer works out from samples, holding what they return from one to the next."""
+
+    blocks: tuple[str, ...]
+    period: Expression  # from sample to sample [s]
+    delay: Expression  # from a sample to the output that follows from it [s]
+    by: str = ""  # what makes functions of z of blocks in s; empty where they are written in z
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Input:
     """What acts on a node, or a free signal.
 
@@ -464,6 +476,7 @@ class Model:
     tables: tuple[PrintedTable, ...] = ()
     signal_units: tuple[tuple[Variable, Dimension], ...] = ()
     quotients: tuple[tuple[tuple[str, str], Dimension], ...] = ()
+    sampled: SampledBlocks | None = None  # what takes samples; all else is continuous
     operating_point: OperatingPoint | None = None
     # Outputs that are imposed, each with an input that follows from them: functions go the other way there.
     imposed: tuple[tuple[str, str], ...] = ()
@@ -510,8 +523,9 @@ class Model:
 
     @property
     def settable(self) -> tuple[ModelParameter, ...]:
-        """The parameters but for the imaginary unit."""
-        return tuple(p for p in self.parameters if not p.is_imaginary)
+        """The parameters but for the imaginary unit, and the z of sampled blocks."""
+        moving = (Z,) if self.sampled is not None else ()
+        return tuple(p for p in self.parameters if not p.is_imaginary and p.name not in moving)
 
     @property
     def imaginary(self) -> ModelParameter | None:
@@ -551,6 +565,8 @@ class Model:
         yield from (("", o.expression) for o in self.outputs)
         for f in self.fields:
             yield from ((f.name, e) for e in (f.start, f.end, *f.equations, *f.conditions))
+        if self.sampled is not None:
+            yield from (("", e) for e in (self.sampled.period, self.sampled.delay))
 
     @property
     def transfer_functions(self) -> tuple[tuple[str, str], ...]:

@@ -28,6 +28,7 @@ from symflex.model.model import (
     Output,
     PlacedBlock,
     Published,
+    SampledBlocks,
     Signal,
 )
 from symflex.model.reading import NAME, Reader, has_ports, signed_number
@@ -657,6 +658,7 @@ class Draft:
     cycles: AsWritten  # reads frequencies as they are meant
     fields: tuple[FieldProblem, ...] = ()
     point: OperatingPoint | None = None  # at which the equations of motion are linear
+    sampled: SampledBlocks | None = None
 
     @property
     def parameters(self) -> list[str]:

@@ -137,6 +137,10 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     draft = _read_draft(reader, spec, sections, origin)
     defined, inputs, outputs = draft.definitions, draft.inputs, draft.outputs
     twins = _refuse_twins(reader, draft)
+    if draft.sampled is not None:
+        from symflex.model.sampled import misplaced
+
+        reader.take(misplaced(draft))
     draft = rewritten(
         Specified(reader, sections, origin.loads.settings), _with_equations(reader, sections, draft)
     )
@@ -174,9 +178,16 @@ def _read_draft(reader: Reader, spec: Spec, sections: Sections, origin: Origin) 
     outputs = read_outputs(reader, sections["outputs"])
     _check_count(reader, spec, outputs, inputs)
     inherited = _inherited_parameters(reader, declared, blocks)
+    sampled = None
+    if sections["sampled"]:
+        from symflex.model.sampled import VARIABLE, read_sampled  # few models have one
+
+        sampled = read_sampled(reader, spec.root.get("sampled"), blocks)
+        inherited += (VARIABLE,)
     return Draft(
-        declared, inherited, definitions, (), elements, inputs, blocks, signals, outputs, AsWritten()
-    )
+        declared, inherited, definitions, (), elements, inputs, blocks, signals, outputs, AsWritten(),
+        sampled=sampled,
+    )  # fmt: skip
 
 
 def _with_equations(reader: Reader, sections: Sections, draft: Draft) -> Draft:
@@ -379,6 +390,10 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> Model:
         fields=tuple(f.rewritten(lower) for f in draft.fields),
         inputs=tuple(measured_input(i, system) for i in inputs),
         outputs=tuple(_measured(o, system) for o in draft.outputs),
+        sampled=draft.sampled
+        and replace(
+            draft.sampled, period=lower(draft.sampled.period, "s"), delay=lower(draft.sampled.delay, "s")
+        ),
         signal_units=tuple(units.items()),
         quotients=tuple(quotients(draft, system)),
         warnings=tuple(doubtful_units(draft.declared)),
@@ -541,5 +556,7 @@ def _all_expressions(draft: Draft) -> list[tuple[Expression, Kind]]:
         kinds |= {"l": "real"} if isinstance(use.element, LineElement) else {}
         expressions += [(e, kinds.get(name, "constant")) for name, e in use.values]
     expressions += [(e, "constant") for b in draft.blocks for _, e in b.values]
+    if draft.sampled is not None:
+        expressions += [(e, "real") for e in (draft.sampled.period, draft.sampled.delay)]
     expressions += [(x.expression, "signal") for x in draft.signals]
     return expressions + [(x.expression, "signal") for x in draft.outputs]

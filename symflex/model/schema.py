@@ -24,6 +24,7 @@ from symflex.model.declarations import ASSUMPTIONS
 from symflex.model.headings import FORMAT_VERSION, NEEDED
 from symflex.model.model import INPUT_KINDS, ROOT_QUANTITIES, TRANSFORMER_SYMBOLS
 from symflex.model.reading import NAME
+from symflex.model.sampled import HOLD, RULES
 from symflex.model.scope import RESERVED
 from symflex.papers.labels import LABEL_LIMIT
 
@@ -62,6 +63,7 @@ def json_schema() -> Schema:
         },
         "energy": _energy(),
         "blocks": _table(_block(), "transfer functions that are factors in expressions", FREE_NAMES),
+        "sampled": _sampled(),
         "fields": _table(_field(), "boundary-value problems"),
         "ports": _table(_contact_port(), "where the machine is touched"),
         "published": {
@@ -123,6 +125,18 @@ def _parameter() -> Schema:
         "assume": {"enum": list(ASSUMPTIONS), "description": "what its sign is; positive by default"},
     }
     return {"anyOf": [value, _closed(_labelled(keys))]}
+
+
+def _sampled() -> Schema:
+    keys = {
+        "period": _said(VALUE, "time from sample to sample"),
+        "hold": {"enum": [HOLD], "description": "what the output does between samples"},
+        "delay": _said(VALUE, "time from a sample to the output that follows from it; 0 by default"),
+        "blocks": _said({"type": "array", "items": TEXT}, "which blocks are sampled; those written in z"),
+        "by": {"enum": list(RULES), "description": "how s becomes z in blocks that are written in s"},
+        "doc": _said(TEXT, "remarks"),
+    }
+    return {**_closed(keys, ["period"]), "description": "controllers that a computer works out"}
 
 
 def _expression() -> Schema:

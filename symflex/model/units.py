@@ -105,6 +105,9 @@ def _compare(
             ports = block.block.parameters if block.block else ()
             doc = next((p.doc for p in ports if p.name == name), "")
             require(expression, block_unit(block, name), f"{name} of block '{block.name}'", doc)
+    if draft.sampled is not None:
+        require(draft.sampled.period, "s", "period of [sampled]", "time from sample to sample")
+        require(draft.sampled.delay, "s", "delay of [sampled]", "time from a sample to its output")
 
 
 def _measure_signals(draft: Draft, system: DimensionSystem, unsound: Collection[Span | None]) -> None:

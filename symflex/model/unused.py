@@ -55,7 +55,7 @@ def _uses(model: Model) -> dict[str, set[str]]:
 def _unused_names(model: Model, used: Mapping[str, set[str]]) -> Iterator[Diagnostic]:
     shared = {p.name for b in model.blocks if b.submodel is not None for p in b.submodel.parameters}
     shared |= {n for f in model.figures for n in (f.gain, *f.over)}
-    for parameter in model.parameters:
+    for parameter in model.settable:
         if parameter.name not in shared and not used.get(parameter.name):
             yield unused_name("parameter", parameter.name, parameter.span)
     for source in model.inputs:

@@ -120,6 +120,7 @@ def bind(
     if tf.model.imaginary:
         tf.kernels.without_tapers(*LOSSY_TAPER)
     used = (*tf.parameters, *(p for p in tf.hidden_parameters if p not in tf.parameters))
+    used = tuple(p for p in used if p.name not in dict(tf.fixed))
     exact = values_for(tf.model, used, dict(values or {}))
     if tf.is_large:
         return _derived_with_numbers(tf, exact, [p.name for p in tf.model.parameters])
@@ -160,10 +161,10 @@ def bind(
             if e > 0 and any(degree_in(f, i) for i in varying)
         ]
     if not tf.kernels:
-        return _compared(BoundTransferFunction(tf, exact, ratio, tuple(hidden)))
+        return _compared(BoundTransferFunction(tf, exact, ratio, tuple(hidden), fixed=tf.fixed))
     kernels = tf.kernels.embedded([(v, images.apply_factored(v)) for v in tf.kernels.values])
     parts = (images.apply_factored(tf.num), images.apply_factored(tf.den))
-    return _compared(BoundTransferFunction(tf, exact, ratio, tuple(hidden), kernels, parts))
+    return _compared(BoundTransferFunction(tf, exact, ratio, tuple(hidden), kernels, parts, fixed=tf.fixed))
 
 
 def with_waves(bound: BoundTransferFunction) -> BoundTransferFunction | None:
@@ -201,7 +202,9 @@ def _substitution(tf: TransferFunction, values: Sequence[tuple[str, ExactValue]]
     coordinate = [COORDINATE] if any(law.matrix for law in tf.kernels.dispersions) else []
     table = dict(values)
     unit = [name for name, value in values if value.is_imaginary]
-    ring = Ring((LAPLACE, "pi", *unit, *coordinate, *_used_constants(tf), *tf.kernels.generators))
+    fixed = [name for name, _ in tf.fixed if name in tf.ratio.ring.index]
+    constants = (*unit, *coordinate, *fixed, *_used_constants(tf))
+    ring = Ring((LAPLACE, "pi", *constants, *tf.kernels.generators))
     return _Substitution(ring, tf.ratio.ring, table, radicals_at(tf, ring, table))
 
 

@@ -63,6 +63,10 @@ def assemble(model: Model) -> Equations:
 
 def assemble_for_checks(model: Model) -> Equations:
     """Return the equations for what needs no closed form, sparse where members are many."""
+    if model.sampled is not None:
+        from symflex.model.sampled import continuous_part  # few models have one
+
+        model = continuous_part(model)
     return assemble_sparse(model) if model.is_distributed and _may_be_large(model) else assemble(model)
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import ClassVar, Literal
 
-from flint import acb, fmpz_mpoly
+from flint import acb, arb, fmpz_mpoly
 
 from symflex.algebra import LAPLACE, NO_KERNELS, Factored, KernelTable, Radicals, Ring, degree_in
 from symflex.equations import ConstantFunction, radicals_of
@@ -109,6 +109,8 @@ class TransferFunction:
     solve: ModelSolve | None = field(default=None, compare=False, repr=False)
     # The same over a ring with kernels, where only what cancelled has any; then ``hidden`` lacks these.
     with_waves: TransferFunction | None = None
+    # Parameters without value that are real numbers all the same, known at any precision.
+    fixed: tuple[tuple[str, Callable[[], arb]], ...] = ()
 
     @cached_property
     def ratio(self) -> Factored:

@@ -10,6 +10,7 @@ from typing import Final
 
 import numpy as np
 
+from symflex import pipeline
 from symflex.analysis.response import SampledResponse
 from symflex.codegen.exporters import EXPORTERS
 from symflex.codegen.latex import LOOP_TITLES
@@ -17,7 +18,6 @@ from symflex.drawing import draw_model
 from symflex.errors import Diagnostic, SymflexError, UncertifiedError
 from symflex.figures import FIGURES, LOOP_FIGURES, AxisLimits, draw, draw_measured, draw_over
 from symflex.files.write import free_name
-from symflex.loops.over import stability_over
 from symflex.model import Figure
 from symflex.options import PlotOptions
 from symflex.report.document import (
@@ -116,7 +116,7 @@ def _picture(
         caption = f"{LOOP_TITLES[figure.kind]}, gain {figure.gain}."
     elif figure.over:
         asked = PlotOptions(figure.kind, over=figure.over)
-        drawn = draw_over(stability_over(study.model, asked.stability), asked)
+        drawn = draw_over(pipeline.stability(study.model, asked.stability), asked)
         caption = f"Stability over {' and '.join(figure.over)}."
     elif beside is not None:
         drawn = draw_measured(beside.measured, beside.model, beside.unit)

@@ -1,0 +1,239 @@
+"""The characteristic function of a sampled loop, in ``b = 1/z`` and the parameters of its controllers.
+
+Input: a model with ``[sampled]``, and names of parameters that stay symbols. Output: a :class:`SampledLoop`.
+
+    m x'' + b x' = F - f, f = K x at samples
+    characteristic function    1 - C(z) P(z) = (1 - b)(1 - r b) - K (n_1 b + n_2 b^2), r = exp(-b T/m)
+
+With ``b = exp(-s T)`` this is a function of delays: everything that is proved along the imaginary axis for
+delayed loops is proved around the unit circle for this one. Its coefficients are enclosed to any
+precision. With ``b = (1 - w)/(1 + w)`` it is a polynomial in w, whose roots in the right half-plane are
+those outside the unit circle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from functools import cached_property, partial
+
+from flint import arb, fmpz_mpoly
+
+from symflex.algebra import NO_KERNELS, Factored, Ring
+from symflex.analysis.sampled_loop.in_letters import BACK, Ends, Fixed, Timing, pulse_of, pulse_over
+from symflex.analysis.sampled_loop.pulse import pulse_function
+from symflex.balls import ball, precision
+from symflex.errors import Diagnostic, ModelError
+from symflex.expressions import (
+    Expression,
+    Name,
+    Negative,
+    Product,
+    Quotient,
+    Sum,
+    names_among,
+    number,
+    substitute,
+)
+from symflex.library.blocks import BLOCKS
+from symflex.loops.apart import NONE, poles_apart
+from symflex.loops.boxes import BITS, Box, CharacteristicFunction, Piece
+from symflex.loops.loop import GainPolynomial
+from symflex.model import ExactValue, Input, Model, ModelParameter, Output, PlacedBlock, with_numbers
+from symflex.model.model import Z
+from symflex.model.sampled import OpenedLoop, SampledChannel, opened
+from symflex.model.units import exact_expression
+from symflex.roots import PoleZeroMap
+from symflex.roots.locate import locate
+from symflex.roots.passivity import observed
+from symflex.roots.pole_zero_map import StabilityVerdict
+from symflex.state_space.sampled import Sampling
+from symflex.transfer import BoundTransferFunction, TransferFunction, bind
+from symflex.transfer.enclose import enclose, rational_value
+from symflex.transfer.of_model import derive_all
+
+COUNT_DIGITS = 15
+CLOSED, DRIVEN = "sampled loop", "reference"  # the function whose poles are those of the loop
+
+
+@dataclass(frozen=True, eq=False)
+class SampledLoop:
+    """A loop closed by sampled controllers, some of whose parameters are symbols."""
+
+    model: Model  # as it was declared
+    opened: OpenedLoop
+    period: Fraction  # [s]
+    delay: Fraction  # from a sample to the output that follows from it [s]
+    tf: TransferFunction  # whose denominator is the characteristic function
+    hidden: tuple[BoundTransferFunction, ...] = ()  # of the continuous part, with modes no controller sees
+
+    def characteristic(self, names: Sequence[str]) -> SampledCharacteristic:
+        """Return the function whose roots are followed around the unit circle."""
+        values = tuple((p.name, p.value) for p in self.tf.model.parameters if p.value and p.name not in names)
+        known = {p.name: p.value for p in self.model.parameters if p.value and p.name not in names}
+        period = substitute(self.opened.period, {n: exact_expression(x) for n, x in known.items()})
+        return SampledCharacteristic(self.tf, tuple(names), values, is_modal=False, period=period)
+
+    @cached_property
+    def apart(self) -> StabilityVerdict:
+        """What modes of the continuous part say of the loop that no controller sees or moves."""
+        verdict = NONE
+        for bound in self.hidden:
+            ring = bound.ratio.ring
+            unseen = [
+                GainPolynomial((Factored.polynomial(ring, h.polynomial),), h.multiplicity, is_hidden=True)
+                for h in bound.hidden
+            ]
+            verdict = verdict.beside(poles_apart(bound, unseen).verdict)
+        return verdict
+
+
+def _between(ends: Ends) -> arb:
+    return ball(ends[0]).union(ball(ends[1]))
+
+
+def described(loop: SampledLoop) -> str:
+    """Return in words what takes samples, and how often."""
+    sampled = loop.model.sampled
+    names = ", ".join(sampled.blocks if sampled is not None else ())
+    late = f", late by {float(loop.delay):g} s" if loop.delay else ""
+    by = f", by {sampled.by}" if sampled is not None and sampled.by else ""
+    return f"{names}: sampled every {float(loop.period):g} s{by}, the output held{late}"
+
+
+@dataclass(frozen=True, eq=False)
+class SampledCharacteristic(CharacteristicFunction):
+    """A characteristic function in ``exp(-s T)``: half of the unit circle is the axis up to ``pi/T``."""
+
+    period: Expression = field(kw_only=True)  # [s]
+
+    def _end(self, box: Box) -> float | str:
+        """Return half of the sampling frequency, the largest in a box [rad/s], and a little more."""
+        return float(self._half(box).upper()) * (1 + 2.0**-50)  # a pole that passes z = -1 does so there
+
+    def _half(self, box: Box) -> arb:
+        """Return half of the sampling frequency [rad/s], for all values in a box."""
+        fixed = {n: partial(_between, ends) for n, ends in zip(self.names, box, strict=True)}
+        with precision(BITS):
+            return arb.pi() / enclose(self.period, fixed)
+
+    def is_mirrored_at(self, box: Box, piece: Piece) -> bool:
+        """Tell whether a piece of the axis may hold z = 1 or z = -1."""
+        return not (piece[0] and ball(piece[1]) < self._half(box))
+
+    def located(self, point: Sequence[Fraction | ExactValue], modes: int = 1) -> PoleZeroMap:
+        """Return the poles in the w plane at one point."""
+        return located_in_w(self.tf, dict(zip(self.names, point, strict=True)))
+
+
+def located_in_w(
+    tf: TransferFunction, values: Mapping[str, ExactValue | Fraction], digits: int = COUNT_DIGITS
+) -> PoleZeroMap:
+    """Return the poles of a function of ``b = (1 - w)/(1 + w)``, to so many digits."""
+    return locate(in_w(bind(tf, values)), None, digits, with_zeros=False)
+
+
+def in_w(bound: BoundTransferFunction) -> BoundTransferFunction:
+    """Return one over the characteristic function as a rational function of w, which its s stands for."""
+    ring = bound.ratio.ring
+    (back,) = (ring.index[k.generator] for k in bound.kernels.kernels)
+    small = Ring(tuple(n for i, n in enumerate(ring.names) if i != back))
+    # What a controller does not see is in what it closes the loop around.
+    unseen = [(h.polynomial, h.multiplicity) for h in bound.hidden if h.polynomial.degrees()[back]]
+    den = Factored.number(small, 1)
+    for factor, exponent in (*bound.den.factors, *unseen):
+        if exponent > 0 and factor != ring.context.gen(back):  # b = 0 is z at infinity
+            den = den * Factored.polynomial(small, _turned(ring, small, factor, back)) ** exponent
+    return replace(bound, ratio=1 / den, hidden=(), kernels=NO_KERNELS, parts=None, is_of_model=False)
+
+
+def _turned(ring: Ring, small: Ring, factor: fmpz_mpoly, back: int) -> fmpz_mpoly:
+    """Return ``(1 + w)^n f((1 - w)/(1 + w))`` of a polynomial of degree n in b."""
+    parts = ring.coefficients(factor, back)
+    w = small.context.gen(0)
+    total = small.constant(0)
+    for power_of, part in enumerate(parts):
+        moved = small.taken_over(part, ring.names)
+        total += moved * (1 - w) ** power_of * (1 + w) ** (len(parts) - 1 - power_of)
+    return total
+
+
+def sampled_loop(model: Model, ranges: Mapping[str, Ends] | None = None) -> SampledLoop:
+    """Return the loop of a model with ``[sampled]``, parameters of its controllers with a range left symbols.
+
+    ModelError: SF229 where a parameter has no value; SF235, SF236, SF260, SF801 where the loop is none.
+    """
+    loop, symbolic = opened(model), dict(ranges or {})
+    numbers = {p.name: p.value for p in model.parameters if p.value is not None}
+    period, delay = _time(model, loop.period, numbers), _time(model, loop.delay, numbers)
+    if not period:
+        raise _no_time("the period of [sampled] is 0", loop.period)
+    for name in symbolic:
+        _check_symbol(model, loop, name)
+    if len(loop.channels) > 1:
+        message = "a loop with several sampled blocks, or one at several places, is not available yet"
+        raise ModelError(Diagnostic("SF260", message, loop.period.span))
+    (channel,) = loop.channels
+    (tf,) = derive_all(observed(with_numbers(loop.model), channel.seen), [(channel.seen, channel.held)])
+    bound = bind(tf.whole)
+    if any(names_among(e, symbolic) for e in (loop.period, loop.delay)):
+        pulse = pulse_over(bound, Timing(loop.period, loop.delay, numbers, symbolic))
+    else:
+        pulse = pulse_of(pulse_function(bound, Sampling(period), delay))
+    tf = _closed(model, channel, loop.period, pulse, symbolic)
+    return SampledLoop(model, loop, period, delay, tf, (bound,))
+
+
+def _time(model: Model, expression: Expression, numbers: Mapping[str, ExactValue]) -> Fraction:
+    """Return a time [s] of ``[sampled]``."""
+    for parameter in model.settable:
+        if parameter.name not in numbers and names_among(expression, {parameter.name}):
+            message = f"parameter '{parameter.name}' has no value"
+            raise ModelError(
+                Diagnostic("SF229", message, parameter.span, "give it a value, here or with --set")
+            )
+    value = rational_value(expression, numbers)
+    if value is None or value < 0:
+        raise _no_time("a time of [sampled] is no positive rational number", expression)
+    return value
+
+
+def _no_time(message: str, expression: Expression) -> ModelError:
+    return ModelError(Diagnostic("SF260", message, expression.span, 'write it as a time: "1 ms"'))
+
+
+def _check_symbol(model: Model, loop: OpenedLoop, name: str) -> None:
+    """Refuse a parameter that is not one of controllers alone."""
+    parameter = next(p for p in model.parameters if p.name == name)
+    if any(names_among(e, {name}) for _, e in loop.model.expressions()):
+        message = f"'{name}' is a parameter of the continuous part of a sampled loop"
+        hint = "ask for parameters of the sampled block; for others, ask at each value: --set NAME=VALUE"
+        raise ModelError(Diagnostic("SF801", message, parameter.span, hint))
+    used = (*(c.controller for c in loop.channels), loop.period, loop.delay)
+    if not any(names_among(e, {name}) for e in used):
+        raise ModelError(Diagnostic("SF801", f"no pole of the model depends on '{name}'", parameter.span))
+
+
+def _closed(
+    model: Model,
+    channel: SampledChannel,
+    period: Expression,
+    pulse: tuple[Expression, Fixed],
+    symbolic: Collection[str],
+) -> TransferFunction:
+    """Return one over ``1 - C P`` as a function of ``exp(-s T)``."""
+    seen, fixed = pulse
+    controller = substitute(channel.controller, {Z: Quotient(number(1), Name(BACK))})
+    loop_gain = Product((controller, seen))
+    shown = Quotient(Name(DRIVEN), Sum((number(1), Negative(loop_gain))))
+    kept = tuple(p for p in model.parameters if p.name in symbolic or p.value is not None)
+    constants = tuple(ModelParameter(name, None, "", "real") for name, _ in fixed)
+    closed = Model(
+        parameters=(*kept, *constants),
+        blocks=(PlacedBlock(BACK, BLOCKS["delay"], (("T", period),)),),
+        inputs=(Input(DRIVEN, "signal"),),
+        outputs=(Output(CLOSED, shown),),
+    )
+    (tf,) = derive_all(with_numbers(closed, symbolic, in_kernels=True), [(CLOSED, DRIVEN)])
+    return replace(tf.whole, solve=None, fixed=fixed)
