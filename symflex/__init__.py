@@ -54,6 +54,7 @@ if TYPE_CHECKING:
         read_measurement,
         write_report,
     )
+    from symflex.api.transfer_matrix import BoundTransferMatrix, TransferMatrix
     from symflex.budget import Budget
     from symflex.errors import SymflexError
 
@@ -62,6 +63,7 @@ __version__ = "1.0.0"
 __all__ = [
     "BoundNestedTransferFunction",
     "BoundTransferFunction",
+    "BoundTransferMatrix",
     "Budget",
     "Fit",
     "FittedParameters",
@@ -77,6 +79,7 @@ __all__ = [
     "StateSpace",
     "SymflexError",
     "TransferFunction",
+    "TransferMatrix",
     "WrittenReport",
     "__version__",
     "fit",
@@ -90,7 +93,9 @@ __all__ = [
 
 _ELSEWHERE = {
     "Budget": "symflex.budget",
+    "BoundTransferMatrix": "symflex.api.transfer_matrix",
     "SymflexError": "symflex.errors",
+    "TransferMatrix": "symflex.api.transfer_matrix",
 }
 """Modules of the public names that are not in ``symflex.api``."""
 

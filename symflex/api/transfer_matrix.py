@@ -17,6 +17,7 @@ from symflex.api.transfer_function import (
 )
 from symflex.errors import no_such, refused
 from symflex.expressions import Name, quotient
+from symflex.model import Model
 from symflex.print.forms import print_part
 from symflex.print.read_back import read_back
 from symflex.print.sympy import symbols_of, to_sympy
@@ -112,6 +113,9 @@ class TransferMatrix(_Indexed):
 
         def __getattr__(self, name: str) -> NoReturn:
             refuse_attribute(self, name, BoundTransferMatrix)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return _derive_again, (self.exact.model, self.outputs, self.inputs)
 
     @property
     def outputs(self) -> tuple[str, ...]:
@@ -222,6 +226,30 @@ class TransferMatrix(_Indexed):
         """
         return TransferMatrix(matrices_layer.inverse(self.exact))
 
+    def return_difference(self) -> TransferMatrix:
+        """Return I + L for a square matrix L of open loops, which minus closes from outputs to inputs.
+
+        ``det()`` of it is zero at the poles of the closed loops, and its ``inverse()`` is their sensitivity.
+
+        Examples
+        --------
+        >>> import symflex
+        >>> L = symflex.loads('''
+        ... symflex = 1
+        ... parameters = { k = {}, q = {} }
+        ... inputs = { u = {}, v = {} }
+        ... outputs = { y = "k*u/s + q*v/s", z = "k*v/s - q*u/s" }
+        ... ''').transfer_matrix()
+        >>> L.return_difference().det()
+        (k**2 + 2*k*s + q**2 + s**2)/s**2
+
+        Raises
+        ------
+        UsageError
+            SF902 when the matrix is not square.
+        """
+        return TransferMatrix(matrices_layer.return_difference(self.exact))
+
     def interaction(self) -> matrices_layer.Interaction:
         """Return static gains, static decoupling and relative gains at s = 0; its text says them in letters.
 
@@ -257,6 +285,10 @@ class BoundTransferMatrix(_Indexed):
 
         def __getattr__(self, name: str) -> NoReturn:
             refuse_attribute(self, name)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        values = {name: value for bound in self.exact.each for name, value in bound.values}
+        return _bind_again, (TransferMatrix(self.exact.source), values)
 
     @property
     def outputs(self) -> tuple[str, ...]:
@@ -307,6 +339,14 @@ class BoundTransferMatrix(_Indexed):
         """
         return self.exact.relative_gains(s)
 
+    def characteristic_loci(self, s: ArrayLike) -> NDArray[np.complex128]:
+        """Return the eigenvalues of a square matrix at points [rad/s] in a row, of shape (n, points).
+
+        Each is followed from point to point. On a Nyquist contour they encircle -1, all together, as often
+        as det(I + L) does 0.
+        """
+        return self.exact.characteristic_loci(s)
+
     def dcgain(self) -> NDArray[np.float64]:
         """Return the limits for s -> 0 from the right, each proved to the last digit."""
         import numpy as np
@@ -333,3 +373,12 @@ class BoundTransferMatrix(_Indexed):
         num = [[system.num[0][0] for system in row] for row in single]
         den = [[system.den[0][0] for system in row] for row in single]
         return kind(num, den, inputs=list(self.inputs), outputs=list(self.outputs))
+
+
+def _derive_again(model: Model, outputs: tuple[str, ...], inputs: tuple[str, ...]) -> TransferMatrix:
+    """Return a matrix for a copy, or for another process: its ring cannot be pickled."""
+    return TransferMatrix(matrices_layer.derive_matrix(model, outputs, inputs))
+
+
+def _bind_again(matrix: TransferMatrix, values: dict[str, Any]) -> BoundTransferMatrix:
+    return matrix.bind(**values)

@@ -5,7 +5,7 @@ denominator, and what follows from these.
 """
 
 from symflex.matrices.interaction import Interaction, interaction
-from symflex.matrices.inverse import Imposed, determinant, impose_all, inverse
+from symflex.matrices.inverse import Imposed, determinant, impose_all, inverse, return_difference
 from symflex.matrices.notations import (
     interaction_json,
     interaction_text,

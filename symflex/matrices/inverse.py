@@ -21,6 +21,7 @@ from dataclasses import dataclass, replace
 
 from symflex.algebra import Factored
 from symflex.errors import BudgetError, Diagnostic, ModelError, refused
+from symflex.expressions import Name, sum_of
 from symflex.matrices.transfer_matrix import TransferMatrix, derive_matrix, joined_ring, one_table
 from symflex.model import Model
 from symflex.transfer import AnyTransferFunction, TransferFunction
@@ -91,6 +92,24 @@ def singular(matrix: TransferMatrix, found: Imposed) -> ModelError:
     size = len(matrix.pairs)
     message = f"the transfer matrix is singular at every s: its normal rank is {found.rank}, not {size}"
     return ModelError(Diagnostic("SF237", message, None, f"pairs that are independent: {inside}"))
+
+
+def return_difference(matrix: TransferMatrix) -> TransferMatrix:
+    """Return I + L of loops that are opened at the inputs of a square matrix L, each fed back with minus.
+
+    Its determinant is zero at the poles of the closed loops; its inverse is their sensitivity. It is derived
+    from the equations, with the input added to each output. Raises SF902 where the matrix is not square.
+    """
+    rows, columns = matrix.shape
+    if rows != columns or matrix.model.imposed:
+        raise refused("loops are closed from as many outputs to as many inputs of a model")
+    added = {o.name: i.name for o, i in zip(matrix.outputs, matrix.inputs, strict=True)}
+    outputs = tuple(
+        replace(o, expression=sum_of([o.expression, Name(added[o.name])])) if o.name in added else o
+        for o in matrix.model.outputs
+    )
+    model = replace(matrix.model, outputs=outputs)
+    return derive_matrix(model, [o.name for o in matrix.outputs], [i.name for i in matrix.inputs])
 
 
 def determinant(matrix: TransferMatrix) -> TransferFunction:

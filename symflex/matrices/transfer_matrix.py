@@ -20,6 +20,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from math import lcm
 from typing import TYPE_CHECKING, Generic, TypeVar
 
@@ -194,6 +195,23 @@ class BoundMatrix(_PairTable[AnyBoundFunction]):
             if np.isfinite(values[place]).all() and np.linalg.matrix_rank(values[place]) == rows:
                 found[place] = values[place] * np.linalg.inv(values[place]).T
         return np.moveaxis(found, (-2, -1), (0, 1))
+
+    def characteristic_loci(self, s: npt.ArrayLike) -> npt.NDArray[np.complex128]:
+        """Return the eigenvalues of a square matrix at points in a row, each followed to its nearest one.
+
+        They are of shape (n, points): det(I + L) is the product of one plus each of these.
+        """
+        import numpy as np
+
+        rows, columns = self.shape
+        if rows != columns:
+            raise refused(f"characteristic loci are of square matrices; this one is {rows} x {columns}")
+        values = np.moveaxis(self.at(np.ravel(s)), -1, 0)
+        loci = np.linalg.eigvals(values).astype(complex)
+        for before, here in pairwise(loci):
+            left = list(here)
+            here[:] = [left.pop(int(np.argmin(np.abs(np.array(left) - x)))) for x in before]
+        return loci.T
 
 
 def derive_matrix(

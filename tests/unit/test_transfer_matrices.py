@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 import sympy
@@ -42,6 +44,14 @@ def test_python_control_gets_all_inputs_and_outputs_by_name():
     assert isinstance(system, control.TransferFunction)
     assert (system.input_labels, system.output_labels) == (["F_1", "F_2"], ["X_1", "X_2"])
     assert np.allclose(system(2j), G.at(2j), rtol=1e-12)
+
+
+def test_a_matrix_can_be_pickled_as_its_inverse_and_its_numbers_can():
+    for matrix in (G, G.inverse()):
+        again = pickle.loads(pickle.dumps(matrix))
+        assert str(again) == str(matrix)
+    bound = pickle.loads(pickle.dumps(G.bind(k_1=10)))
+    assert np.array_equal(bound.at(2j), G.bind(k_1=10).at(2j))
 
 
 def test_a_notebook_shows_the_equation_and_a_terminal_the_text():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from symflex.errors import ModelError, UsageError
-from symflex.matrices.inverse import determinant, impose_all, inverse
+from symflex.matrices.inverse import determinant, impose_all, inverse, return_difference
 from symflex.matrices.transfer_matrix import derive_matrix
 from symflex.transfer import bind
 from tests.unit.matrices.models import TWO_MASSES, model_of
@@ -77,3 +77,23 @@ def test_a_wide_matrix_has_a_normal_rank_and_no_inverse() -> None:
     assert impose_all(matrix).rank == 2
     with pytest.raises(UsageError, match="2 outputs and 3 inputs has no inverse"):
         inverse(matrix)
+
+
+def test_the_return_difference_adds_the_unit_matrix_and_its_inverse_is_the_sensitivity() -> None:
+    matrix = derive_matrix(model_of(TWO_MASSES))
+    s = 0.3 + 2j
+    whole = np.eye(2) + np.linalg.inv(np.array([[2 * s**2 + 50, -20], [-20, s**2 + 20]]))
+    closed = return_difference(matrix)
+    assert np.allclose(closed.bind().at(s), whole, rtol=1e-14)
+    assert bind(determinant(closed))(s) == pytest.approx(np.linalg.det(whole), rel=1e-13)
+    assert np.allclose(inverse(closed).bind().at(s), np.linalg.inv(whole), rtol=1e-12)
+
+
+def test_characteristic_loci_are_followed_and_multiply_to_the_determinant() -> None:
+    bound = derive_matrix(model_of(TWO_MASSES)).bind()
+    s = 1 + 1j * np.linspace(0.1, 8, 40)
+    loci = bound.characteristic_loci(s)
+    assert loci.shape == (2, 40)
+    values = np.moveaxis(bound.at(s), -1, 0)
+    assert np.allclose(np.prod(1 + loci, axis=0), np.linalg.det(np.eye(2) + values), rtol=1e-12)
+    assert np.abs(np.diff(loci.real, axis=1)).max() < 0.2
