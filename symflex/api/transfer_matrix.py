@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from symflex import matrices as matrices_layer
+from symflex.api.analyses import budget_of
+from symflex.api.root import Root, RootTable
 from symflex.api.toolboxes import refuse_attribute
 from symflex.api.transfer_function import (
     BoundNestedTransferFunction,
@@ -18,9 +20,11 @@ from symflex.api.transfer_function import (
 from symflex.errors import no_such, refused
 from symflex.expressions import Name, quotient
 from symflex.model import Model
+from symflex.options import RootsOptions, checked_digits
 from symflex.print.forms import print_part
 from symflex.print.read_back import read_back
 from symflex.print.sympy import symbols_of, to_sympy
+from symflex.roots.region import region_of
 from symflex.transfer import BoundNested
 from symflex.transfer import NestedTransferFunction as Nested
 
@@ -214,6 +218,22 @@ class TransferMatrix(_Indexed):
         """The rank at almost every s, proved: so many outputs can be imposed by as many inputs."""
         return matrices_layer.impose_all(self.exact).rank
 
+    def smith_mcmillan(self) -> tuple[sympy.Expr, ...]:
+        """Return the entries on the diagonal of the Smith-McMillan form but for zeros, in symbols.
+
+        They are up to factors without s. Denominators have the poles, numerators the zeros.
+
+        Raises
+        ------
+        ModelError
+            SF910 for beams, rods, delays and roots of s.
+        BudgetError
+            SF501 for too many minors.
+        """
+        form = matrices_layer.smith_mcmillan(self.exact)
+        entries = matrices_layer.in_expressions(self.exact, form)
+        return tuple(to_sympy(entry, self._symbols) for entry in entries)
+
     def inverse(self) -> TransferMatrix:
         """Return the inputs that follow from imposed outputs, exact and in lowest terms.
 
@@ -346,6 +366,76 @@ class BoundTransferMatrix(_Indexed):
         as det(I + L) does 0.
         """
         return self.exact.characteristic_loci(s)
+
+    def roots(
+        self,
+        modes: int | None = None,
+        *,
+        mode: int | None = None,
+        band: tuple[float, float] | None = None,
+        digits: int = 15,
+        budget: float | None = None,
+    ) -> matrices_layer.MatrixRoots:
+        """Return poles and zeros of the whole matrix, with its normal rank, and the directions of its zeros.
+
+        Parameters and errors are those of :meth:`BoundTransferFunction.poles`. What is returned prints as a
+        table; see :class:`symflex.matrices.MatrixRoots`.
+
+        Examples
+        --------
+        >>> import symflex
+        >>> model = symflex.loads('''
+        ... symflex = 1
+        ... inputs = { u = {}, v = {} }
+        ... outputs = { y = "u/(s + 1) + 2*v/(s + 3)", z = "u/(s + 1) + v/(s + 1)" }
+        ... ''')
+        >>> roots = model.transfer_matrix().bind().roots()
+        >>> [complex(zero) for zero in roots.located.zeros], roots.normal_rank
+        ([(1+0j)], 2)
+        >>> [complex(x) for x in roots.directions[0].inputs]
+        [(1+0j), (-1+0j)]
+        """
+        given = RootsOptions(None, modes, mode, band)
+        with budget_of(budget).besides().entered():
+            found = matrices_layer.locate_matrix(
+                self._stated, self.outputs, self.inputs, region_of(given), checked_digits(digits)
+            )
+        found.located.complete()
+        return found
+
+    def poles(
+        self,
+        modes: int | None = None,
+        *,
+        mode: int | None = None,
+        band: tuple[float, float] | None = None,
+        digits: int = 15,
+        budget: float | None = None,
+    ) -> tuple[Root, ...]:
+        """Return the poles of the matrix, as often as in the minors of the matrix; see :meth:`roots`."""
+        located = self.roots(modes, mode=mode, band=band, digits=digits, budget=budget).located
+        return RootTable(map(Root, located.all_poles))
+
+    def zeros(
+        self,
+        modes: int | None = None,
+        *,
+        mode: int | None = None,
+        band: tuple[float, float] | None = None,
+        digits: int = 15,
+        budget: float | None = None,
+    ) -> tuple[Root, ...]:
+        """Return the transmission zeros; see :meth:`roots`."""
+        located = self.roots(modes, mode=mode, band=band, digits=digits, budget=budget).located
+        return RootTable(map(Root, located.zeros))
+
+    @property
+    def _stated(self) -> Model:
+        """The model with these values."""
+        model = self.exact.source.model
+        values = {name: value for bound in self.exact.each for name, value in bound.values}
+        stated = tuple(replace(p, value=values.get(p.name, p.value)) for p in model.parameters)
+        return replace(model, parameters=stated)
 
     def dcgain(self) -> NDArray[np.float64]:
         """Return the limits for s -> 0 from the right, each proved to the last digit."""

@@ -50,7 +50,8 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     --spread adds rectangles that contain the poles and zeros for all combinations of values within a share.
 
     --matrix takes all outputs and inputs together: poles as of McMillan, transmission zeros, decoupling and
-    invariant zeros, the normal rank, and the directions of the zeros.
+    invariant zeros, the normal rank, and the directions of the zeros. With it, --letters adds the
+    Smith-McMillan form.
 
     Exit code 4: some roots could not be separated, or their number could not be proved. Exit code 5: the
     budget was exceeded; the roots certified so far are shown.
@@ -143,15 +144,17 @@ def _check_roots(given: RootsOptions) -> None:
         raise refused("--format is for --letters")
     if (given.inputs or given.outputs) and not given.is_matrix:
         raise refused("--in and --out are for --matrix")
-    of_pairs = given.tf or given.explain or given.letters or given.sensitivity or given.spread is not None
-    if given.is_matrix and of_pairs:
-        raise refused("--tf, --explain, --letters, --sensitivity and --spread are for single pairs")
+    of_pairs = given.tf or given.explain or given.sensitivity or given.spread is not None
+    if given.is_matrix and (of_pairs or given.format != "text"):
+        raise refused("--tf, --explain, --format, --sensitivity and --spread are for single pairs")
 
 
 def _matrix_roots(spec: Specification, given: RootsOptions, chosen: Region | None) -> int:
     """Print poles and zeros of the matrix of several inputs and outputs."""
     from symflex.cli.progress import ProgressBar
+    from symflex.expressions import format_expression
     from symflex.matrices.matrix_roots import matrix_roots_text
+    from symflex.matrices.transfer_matrix import derive_matrix
     from symflex.matrices.zeros import locate_matrix
     from symflex.print.roots import SHORT_DIGITS
 
@@ -160,11 +163,23 @@ def _matrix_roots(spec: Specification, given: RootsOptions, chosen: Region | Non
     asked = given.digits or model.analysis.digits
     with ProgressBar() as bar, entered_budget().reporting_to(bar).entered():
         found = locate_matrix(model, outputs, inputs, chosen, asked or 15)
-    answer(
-        given.as_json,
-        found.to_json_dict,
-        lambda: matrix_roots_text(found, asked or SHORT_DIGITS, terminal_width()),
-    )
+    entries: list[str] = []
+    if given.letters:
+        from symflex.matrices.smith_mcmillan import in_expressions, smith_mcmillan
+
+        matrix = derive_matrix(model, outputs, inputs, "expanded")
+        entries = [format_expression(e) for e in in_expressions(matrix, smith_mcmillan(matrix))]
+
+    def text() -> str:
+        shown = matrix_roots_text(found, asked or SHORT_DIGITS, terminal_width())
+        title = "\n\n  Smith-McMillan form, up to factors without s" if given.letters else ""
+        return shown + title + "".join(f"\n    {entry}" for entry in entries)
+
+    def data() -> dict[str, object]:
+        more = {"smith_mcmillan": entries} if given.letters else {}
+        return {**found.to_json_dict(), **more}
+
+    answer(given.as_json, data, text)
     certificate = found.located.certificate
     is_certified = certificate.certified and not (given.strict and found.located.excluded)
     return 5 if certificate.is_exceeded else 0 if is_certified else 4

@@ -6,6 +6,7 @@ denominator, and what follows from these.
 
 from symflex.matrices.interaction import Interaction, interaction
 from symflex.matrices.inverse import Imposed, determinant, impose_all, inverse, return_difference
+from symflex.matrices.matrix_roots import DecouplingZero, MatrixRoots, ZeroDirection
 from symflex.matrices.notations import (
     interaction_json,
     interaction_text,
@@ -17,4 +18,6 @@ from symflex.matrices.notations import (
     matrix_text,
 )
 from symflex.matrices.printed import MatrixForm, print_matrix
+from symflex.matrices.smith_mcmillan import in_expressions, smith_mcmillan
 from symflex.matrices.transfer_matrix import BoundMatrix, TransferMatrix, derive_matrix
+from symflex.matrices.zeros import locate_matrix

@@ -2,8 +2,8 @@
 
 Input: a lumped model with numbers. Output: :class:`.matrix_roots.MatrixRoots`.
 
-Example: ``G = [1/(s+1), 2/(s+3); 1/(s+1), 1/(s+1)]``. Candidates are s + 1 and s + 3, of the denominators,
-and s - 1, of det G = (1 - s)/((s+1)^2 (s+3)). The determinant of A has s + 1 twice and s + 3 once, that of
+Example: ``G = [1/(s+1), 2/(s+3); 1/(s+1), 1/(s+1)]``. Candidates are s + 1 and s + 3, of det A, and s - 1, of
+the equations with both outputs imposed. The determinant of A has s + 1 twice and s + 3 once, that of
 the system matrix has s - 1 once, and no feedback leaves any of them: poles at -1, -1, -3, a zero at 1.
 
 The candidates are exact. How often each divides the determinants of parts of the system matrix is told modulo
@@ -17,18 +17,17 @@ from dataclasses import dataclass, replace
 
 from flint import fmpz_mpoly
 
-from symflex.algebra import Factored, degree_in, irreducible_factors
-from symflex.matrices.inverse import impose_all
+from symflex.algebra import Factored, Ring, degree_in, irreducible_factors
+from symflex.matrices.constrained import driven_at_once, imposed
 from symflex.matrices.matrix_roots import DecouplingZero, MatrixRoots, directions, matrix_name
 from symflex.matrices.system_matrix import ByPart, SystemMatrix
-from symflex.matrices.transfer_matrix import derive_matrix
 from symflex.model import Model
 from symflex.roots import Mode, Modes, Region, RootProblem, find_pole_zero_map, find_polynomial_roots
 from symflex.roots.pole_zero_map import chosen
 from symflex.roots.polynomial_roots import in_order
-from symflex.roots.problem import problem_of
-from symflex.transfer import BoundTransferFunction, bind_any
-from symflex.transfer.of_model import assemble
+from symflex.roots.problem import cancelled, problem_of
+from symflex.transfer import BoundTransferFunction
+from symflex.transfer.of_model import assemble, derive_bound
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,20 +45,16 @@ class ExactMatrix:
     @staticmethod
     def of(numbers: Model, outputs: tuple[str, ...], inputs: tuple[str, ...]) -> ExactMatrix | None:
         """Return the matrix; ``None`` where factors do not make up the determinants modulo a prime."""
-        source = derive_matrix(numbers, outputs, inputs, "expanded")
-        pairs = source.bind()
-        ring = pairs.over.den.ring
         matrix = SystemMatrix.of(assemble(numbers), outputs, inputs)
         modulo = matrix.modulo
         if modulo is None or (divisors := modulo.divisors) is None:
             return None
-        each = [bound for bound in pairs.each if isinstance(bound, BoundTransferFunction)]
-        hidden = [Factored.polynomial(b.ratio.ring, h.polynomial).over(ring) for b in each for h in b.hidden]
-        known = [pairs.over.den, *(b.den.over(ring) for b in each), *hidden]
-        candidates = [f for value in known for f, _ in value.factors]
-        # Zeros are among the roots of a minor of the largest order, the product of what is met on its way.
-        met = [bind_any(tf) for tf in impose_all(source).pivots]
-        candidates += [f for b in met if b.is_reduced for f, _ in b.ratio.over(ring).factors]
+        pairs = [(outputs[i], inputs[j]) for i, j in modulo.independent]
+        models = [driven_at_once(numbers, outputs, inputs), *([imposed(numbers, pairs)] if pairs else [])]
+        bounds = [derive_bound(m, [(m.outputs[0].name, m.inputs[0].name)])[0] for m in models]
+        ring = Ring(tuple(dict.fromkeys(name for bound in bounds for name in bound.ratio.ring.names)))
+        # Together with what cancelled, the denominators are the determinants of all equations.
+        candidates = [f for b in bounds for f, _ in (b.den * cancelled(b)).over(ring).factors]
         irreducible: list[fmpz_mpoly] = []
         for candidate in candidates:
             parts = (f for f, _ in irreducible_factors(candidate)[1] if degree_in(f, 0))
@@ -71,8 +66,8 @@ class ExactMatrix:
                 return None
         factors = tuple(zip(irreducible, orders, strict=True))
         name = matrix_name(outputs, inputs)
-        bound = replace(each[0], ratio=pairs.over.den)
-        return ExactMatrix(name, bound, matrix, factors, outputs, inputs, modulo.rank)
+        bound = replace(bounds[0], ratio=Factored.number(ring, 1))
+        return ExactMatrix(name, bound, matrix, factors, outputs, inputs, len(pairs))
 
     def _problem(self, order: Callable[[ByPart[int]], int]) -> RootProblem:
         return problem_of(self.bound, [(f, n) for f, orders in self.factors if (n := order(orders))])

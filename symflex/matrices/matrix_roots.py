@@ -84,6 +84,12 @@ class MatrixRoots:
     decoupling_zeros: tuple[DecouplingZero, ...]
     directions: tuple[ZeroDirection, ...]
 
+    def __str__(self) -> str:
+        return matrix_roots_text(self)
+
+    def __repr__(self) -> str:
+        return f"<MatrixRoots {repr(self.located).removeprefix('<PoleZeroMap ')}"
+
     @property
     def has_full_rank(self) -> bool:
         """Whether the normal rank is as large as it can be."""

@@ -17,7 +17,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import combinations
 
 from flint import acb
 
@@ -27,7 +26,7 @@ from symflex.balls import precision
 from symflex.equations import Equations
 from symflex.matrices.constrained import driven_at_once, imposed
 from symflex.matrices.matrix_roots import DecouplingZero, MatrixRoots, directions, matrix_name
-from symflex.matrices.system_matrix import SystemMatrix, is_regular
+from symflex.matrices.system_matrix import SystemMatrix, independent, is_regular
 from symflex.model import Model, with_numbers
 from symflex.model.along import is_tapered
 from symflex.roots import Certificate, Everything, HiddenRoot, PoleZeroMap, Region, Root
@@ -192,19 +191,13 @@ class SearchedMatrix:
 
         With functions of members as independent names, modulo a prime, no rank is smaller.
         """
-        most, found = min(len(self.outputs), len(self.inputs)), list[tuple[str, str]]()
+        height, width = len(self.outputs), len(self.inputs)
         with precision(RANK_BITS):
             values = self._matrix.on(acb(*(size * part for part in POINT)))
-            places = (
-                zip(rows, columns, strict=True)
-                for rank in range(most, 0, -1)
-                for rows in combinations(range(len(self.outputs)), rank)
-                for columns in combinations(range(len(self.inputs)), rank)
-                if is_regular(values.minor(rows, columns))
-            )
-            found = [(self.outputs[i], self.inputs[j]) for i, j in next(places, ())]
+            places = independent(height, width, lambda rows, columns: is_regular(values.minor(rows, columns)))
+        found = [(self.outputs[i], self.inputs[j]) for i, j in places]
         modulo = self._matrix.modulo
-        return found, len(found) == most or (modulo is not None and len(found) == modulo.rank)
+        return found, len(found) == min(height, width) or (modulo is not None and len(found) == modulo.rank)
 
     def _is_excluded(self, rank: int, root: Root) -> bool:
         with precision(2 * root.working_bits()):

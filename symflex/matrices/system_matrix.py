@@ -25,7 +25,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
-from itertools import count, product
+from itertools import combinations, count, product
 from random import Random
 from typing import Generic, TypeVar
 
@@ -173,6 +173,24 @@ def _columns(rows: Sequence[Mapping[int, acb]], size: int, weights: Weights, ran
     return found
 
 
+def independent(
+    rows: int, columns: int, is_regular: Callable[[Sequence[int], Sequence[int]], bool]
+) -> list[tuple[int, int]]:
+    """Return places of a square matrix as large as possible that is regular; nothing if there is none.
+
+    >>> independent(2, 2, lambda rows, columns: len(rows) == 1 and rows[0] != columns[0])
+    [(0, 1)]
+    """
+    places = (
+        list(zip(some, others, strict=True))
+        for rank in range(min(rows, columns), 0, -1)
+        for some in combinations(range(rows), rank)
+        for others in combinations(range(columns), rank)
+        if is_regular(some, others)
+    )
+    return next(places, [])
+
+
 def is_regular(rows: Sequence[Mapping[int, acb]]) -> bool:
     """Tell whether a square matrix is proved to be singular nowhere in its balls."""
     return null_vectors(rows, 0) is not None
@@ -265,10 +283,20 @@ class PrimeSystem:
     prime: int
     point: Mapping[str, int]
 
-    @cached_property
+    @property
     def rank(self) -> int:
         """The normal rank of the transfer matrix."""
-        return int(next(self._values())[1].transfer.rank())
+        return len(self.independent)
+
+    @cached_property
+    def independent(self) -> list[tuple[int, int]]:
+        """As many outputs and inputs, by their numbers, as the normal rank, with a matrix of that rank."""
+        rows = next(self._values())[1].transfer.tolist()
+
+        def is_independent(some: Sequence[int], others: Sequence[int]) -> bool:
+            return bool(int(nmod_mat([[int(rows[i][j]) for j in others] for i in some], self.prime).det()))
+
+        return independent(len(self.matrix.lower), self.matrix.inputs, is_independent)
 
     def image(self, polynomial: fmpz_mpoly, ring: Ring) -> nmod_poly:
         """Return what a polynomial in s and constants is."""

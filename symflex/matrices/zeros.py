@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from symflex.errors import refused
 from symflex.matrices.exact_roots import ExactMatrix
 from symflex.matrices.matrix_roots import MatrixRoots
 from symflex.matrices.searched_roots import SearchedMatrix
@@ -46,6 +47,9 @@ def locate_matrix(
     >>> [str(zero.re) for zero in roots.located.zeros], roots.normal_rank
     (['1.00000000000000'], 2)
     """
+    if model.imposed:
+        hint = "ask the matrix itself, whose zeros are the poles of its inverse"
+        raise refused("poles and zeros of an inverse are not searched", hint)
     rows = picked("output", outputs, [o.name for o in model.outputs])
     columns = picked("input", inputs, [i.name for i in model.inputs])
     exact = None

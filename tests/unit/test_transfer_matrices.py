@@ -60,3 +60,15 @@ def test_a_notebook_shows_the_equation_and_a_terminal_the_text():
     assert G.to_json_dict()["schema"] == "symflex.matrix/1"
     assert r"\begin{equation}" in G.latex(width="ieee")
     assert G.normal_rank == 2
+
+
+def test_roots_of_the_whole_matrix_follow_the_values_that_were_bound():
+    # By hand: X_1/F_1 has the zeros of the second mass on its spring, s^2 = -k_2/m_2; both pairs none.
+    one = symflex.loads(TWO_MASSES).transfer_matrix(["X_1"], ["F_1"]).bind(k_2="80 N/m")
+    assert [complex(z).imag for z in one.zeros()] == pytest.approx([80**0.5, -(80**0.5)])
+    assert (G.bind().zeros(), len(G.bind().poles())) == ((), 4)
+    roots = G.bind().roots()
+    assert "normal rank 2 of a 2 x 2 matrix" in str(roots)
+    assert repr(roots).startswith("<MatrixRoots X_1,X_2/F_1,F_2: 4 poles, 0 zeros, certified")
+    with pytest.raises(symflex.errors.UsageError, match="of an inverse"):
+        G.inverse().bind().zeros()
