@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     from symflex.api.transfer_matrix import TransferMatrix
     from symflex.codegen.export import Exporter
     from symflex.contact.coupled import CoupledStability
+    from symflex.contact.hybrid import HybridPassivity
     from symflex.contact.passivity import PortPassivity
     from symflex.contact.two_ports import TwoPorts
     from symflex.figures import AxesGiven
@@ -498,14 +499,16 @@ class Model:
             return proved if isinstance(proved, StabilityChart) else Stability(proved)
 
     @overload
-    def passivity(self, port: str | None = None, *, digits: int = 12, **values: Number) -> PortPassivity: ...
+    def passivity(
+        self, port: str | None = None, *, digits: int = 12, **values: Number
+    ) -> PortPassivity | HybridPassivity: ...
 
     @overload
     def passivity(self, port: tuple[str, str], *, digits: int = 12, **values: Number) -> TwoPorts: ...
 
     def passivity(
         self, port: str | tuple[str, str] | None = None, *, digits: int = 12, **values: Number
-    ) -> PortPassivity | TwoPorts:
+    ) -> PortPassivity | TwoPorts | HybridPassivity:
         """Return whether the machine is passive at a port, proved, and if not where, with repairs.
 
         Parameters
@@ -520,9 +523,10 @@ class Model:
 
         Returns
         -------
-        PortPassivity or TwoPorts
+        PortPassivity or TwoPorts or HybridPassivity
             ``passive`` (``None`` where it is not decided), ``active`` bands, ``least`` real part, ``repair``
-            and ``example``; of two ports ``passive``, ``absolutely_stable``, and ``least`` eta.
+            and ``example``; of two ports ``passive``, ``absolutely_stable``, and ``least`` eta; with a
+            sampled controller ``passive``, the ``condition`` in letters, and the ``needed`` damping.
 
         Raises
         ------
@@ -563,6 +567,10 @@ class Model:
         model = with_values(self.resolved, values)
         if isinstance(port, tuple):
             return find_two_ports(model, port, checked_digits(digits))
+        if model.sampled is not None:
+            from symflex.contact.hybrid import find_hybrid  # few models have a sampled controller
+
+            return find_hybrid(model, port)
         return find_passivity(model, port, checked_digits(digits))
 
     def contact(

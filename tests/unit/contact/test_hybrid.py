@@ -1,0 +1,88 @@
+"""Passivity of a machine with a sampled controller (Colgate and Schenkel 1997)."""
+
+import numpy as np
+import pytest
+
+from symflex import pipeline
+from symflex.contact.hybrid import find_hybrid
+from symflex.errors import ModelError
+
+HANDLE = """symflex = 1
+[parameters]
+m = "0.3 kg"
+b = "0.7 N*s/m"
+K = "1 kN/m"
+B = {{ value = "0.3 N*s/m", assume = "real" }}
+T = "1 ms"
+[blocks]
+wall = "{wall}"
+[sampled]
+period = "T"
+delay = "{delay}"
+[elements]
+handle = {{ type = "mass", at = "x", m = "m" }}
+rail   = {{ type = "damper", between = ["x", "ground"], b = "b" }}
+motor  = {{ type = "force_source", at = "x", f = "{force}" }}
+{more}
+[inputs]
+F = {{ force = "x" }}
+[outputs]
+X = "x"
+"""
+PD = "K + B*(z - 1)/(T*z)"
+
+
+def found(wall=PD, delay="0", force="-wall*x", more=""):
+    return find_hybrid(pipeline.loads(HANDLE.format(wall=wall, delay=delay, force=force, more=more)), "x")
+
+
+def needed(h, period=1e-3):
+    """Return the largest damping on a grid of frequencies, from the condition as it is printed."""
+    omega_t = np.linspace(1e-3, np.pi, 200_000)
+    z = np.exp(1j * omega_t)
+    return (period / 2 * ((1 - 1 / z) * h(z)).real / (1 - np.cos(omega_t))).max()
+
+
+def test_the_condition_of_a_wall_comes_out_in_letters():
+    assert found().condition == "b > K*T/2 + |B|"
+
+
+def test_the_verdict_changes_at_the_condition():
+    assert found().passive is False  # 0.7 < 0.5 + 0.3
+    assert found(wall="K/2 + B*(z - 1)/(T*z)").passive is True  # 0.7 > 0.25 + 0.3
+    assert found(wall="0.8*K + B*(z - 1)/(T*z)").passive is None  # 0.7 = 0.4 + 0.3
+
+
+def test_a_sample_of_delay_needs_more_damping():
+    late = found(delay="T")
+    expected = needed(lambda z: (1000 + 0.3 * (z - 1) / (1e-3 * z)) / z)
+    assert float(late.needed) == pytest.approx(expected, rel=1e-7)
+    assert late.condition == ""
+
+
+def test_a_filtered_controller_agrees_with_a_grid():
+    filtered = found(wall="K*(z - 0.3)/(z^2 - 0.5*z + 0.2)")
+    expected = needed(lambda z: 1000 * (z - 0.3) / (z**2 - 0.5 * z + 0.2))
+    assert float(filtered.needed) == pytest.approx(expected, rel=1e-7)
+
+
+def test_no_damper_is_enough_for_an_integrator():
+    integrating = found(wall="K*T*z/(z - 1)")
+    assert (integrating.needed, integrating.passive) == (None, False)
+    assert "no damper is large enough" in str(integrating)
+
+
+@pytest.mark.parametrize(
+    ("given", "reason"),
+    [
+        ({"delay": "0.4*T"}, "its output is late by a part of a sample"),
+        ({"more": 'spring = { type = "spring", between = ["x", "ground"], k = "K" }'}, "it is no mass with"),
+        ({"force": "-wall*s*x"}, "the controller does not act and see at the port alone"),
+    ],
+)
+def test_another_machine_is_refused(given, reason):
+    with pytest.raises(ModelError) as caught:
+        found(**given)
+    (problem,) = caught.value.diagnostics
+    assert problem.code == "SF262"
+    assert reason in problem.message
