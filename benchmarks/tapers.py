@@ -51,6 +51,28 @@ F = { force = "tip" }
 [outputs]
 y = "tip"
 """
+RISER = """
+symflex = 1
+[parameters]
+EI = "1e8 N*m^2"
+m = "300 kg/m"
+T = "2e6 N"
+w = "4000 N/m"
+l = "300 m"
+c = "30 N*s/m^2"
+[fields.u]
+domain = ["0", "l"]
+equation = "(EI*u'')'' - ((T - w*x)*u')' + c*s*u + m*s^2*u = 0"
+conditions = ["u(0) = X", "u''(0) = 0", "u(l) = 0", "u''(l) = 0"]
+[inputs]
+X = { unit = "m" }
+[outputs]
+y = "u(l/2)"
+"""
+RISER_POINTS = 80
+"""Of collocation: layers of 7 m at both ends have five points."""
+RISER_OVER_COLLOCATION = 5000.0
+"""Most that certified poles of a riser, zeros and a count may take over one dense eigenvalue problem."""
 MODES = 5
 POINTS = 40
 """Of collocation: the fifth frequency has 11 digits then."""
@@ -73,9 +95,9 @@ TIMES_UNIFORM = 2.0
 """Most that C in band form may take over the formula of the uniform beam, both in vectors; 1.6 is usual."""
 
 
-def ours(modes: int, digits: int) -> NDArray[Any]:
+def ours(modes: int, digits: int, text: str = MODEL) -> NDArray[Any]:
     """Return the lowest frequencies [rad/s], proved."""
-    model = pipeline.loads(MODEL)
+    model = pipeline.loads(text)
     (bound,) = pipeline.derive_bound(model, model.transfer_functions)
     poles = pipeline.roots(bound, Modes(modes), digits).poles
     return np.sort([float(root.im.mid()) for root in poles if root.im > 0])
@@ -83,12 +105,7 @@ def ours(modes: int, digits: int) -> NDArray[Any]:
 
 def collocated() -> NDArray[Any]:
     """Return the same by collocation: ``w'' = M/(E I)`` and ``M'' = omega^2 rho A w``."""
-    n = POINTS + 1
-    k = np.arange(n)
-    x = (1 - np.cos(np.pi * k / POINTS)) / 2
-    c = np.where((k == 0) | (k == POINTS), 2.0, 1.0) * (-1.0) ** k
-    d = np.outer(c, 1 / c) / (np.subtract.outer(x, x) + np.eye(n))
-    d -= np.diag(d.sum(axis=1))
+    n, (x, d) = POINTS + 1, _chebyshev(POINTS)
     second, thin = d @ d, 1 - TAPER * x
     stiff, heavy = np.zeros((2 * n, 2 * n)), np.zeros((2 * n, 2 * n))
     # Moments in units of E I, so that all entries are of one size.
@@ -106,6 +123,29 @@ def collocated() -> NDArray[Any]:
     # Turned upside down: what has no mass is at 0, far from the lowest modes.
     values = np.sort(np.linalg.eigvals(np.linalg.solve(stiff, heavy)).real)
     return np.asarray(1 / np.sqrt(values[-MODES:][::-1]))
+
+
+def _chebyshev(points: int) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Return Chebyshev points between 0 and 1, and the matrix that takes values there to slopes."""
+    k = np.arange(points + 1)
+    x = (1 - np.cos(np.pi * k / points)) / 2
+    c = np.where((k == 0) | (k == points), 2.0, 1.0) * (-1.0) ** k
+    d = np.outer(c, 1 / c) / (np.subtract.outer(x, x) + np.eye(points + 1))
+    return x, d - np.diag(d.sum(axis=1))
+
+
+def riser_collocated() -> NDArray[Any]:
+    """Return imaginary parts of the lowest poles of the riser: u and its moment are 0 at both ends.
+
+    Damping is alike along it, so that ``m s^2 + c s`` is minus the square of a frequency without it.
+    """
+    length, mass, damping = 300.0, 300.0, 30.0
+    x, d = _chebyshev(RISER_POINTS)
+    d = d / length
+    second = (d @ d)[1:-1, 1:-1]
+    tension = (d @ np.diag(2e6 - 4000 * length * x) @ d)[1:-1, 1:-1]
+    squares = np.sort(np.linalg.eigvals(1e8 * second @ second - tension).real)[:MODES] / mass
+    return np.asarray(np.sqrt(squares - (damping / (2 * mass)) ** 2))
 
 
 def shot() -> NDArray[Any]:
@@ -170,6 +210,15 @@ def measure(extent: Extent) -> Measured:
     claims.append(Claim(text, TIMES_COLLOCATION, own / dense, larger_is_better=False))
     text = "5 frequencies of a tapered beam: times as long as solve_ivp and brentq"
     claims.append(Claim(text, TIMES_SHOOTING, own / shooting, larger_is_better=False))
+    task = f"{MODES} poles of a damped riser"
+    ways = {
+        "symflex, 10 digits proved, with the zeros": lambda: ours(MODES, 10, RISER),
+        "numpy, collocation in doubles": riser_collocated,
+    }
+    _compare(found, task, ways, extent)
+    *_, riser, dense = (m.at_least for m in found)
+    text = f"{task}: times as long as collocation in doubles"
+    claims.append(Claim(text, RISER_OVER_COLLOCATION, riser / dense, larger_is_better=False))
     if extent.is_quick:
         return Measured(found, claims)
     _compare(
