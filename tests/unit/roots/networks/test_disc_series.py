@@ -68,6 +68,33 @@ def test_all_roots_are_approximated_and_proved():
     ]
 
 
+def test_terms_that_a_shorter_series_leaves_out_are_within_its_error():
+    # All terms of cosh are positive: what is left out is largest at 1, and so is its slope.
+    found = series(lambda s: s.cosh(), 40.0, count=256)
+    assert len(found.polynomial) > 100
+    short = found.shortened
+    assert len(short.polynomial) < 60
+    left_out = found.polynomial - short.polynomial
+    for missing, error, known in [
+        (left_out(1), short.off, found.off),
+        (left_out.derivative()(1), short.slope_off, found.slope_off),
+    ]:
+        assert 0.99 * abs(missing) < error - known and abs(missing) + known < 1.01 * error
+        assert abs(missing) > 1e3 * known
+    assert short.count() == found.count() == 6
+    guesses = [x for x in found.approximate(0) if found.proved(x) is not None]
+    assert sorted(round(float(x.imag) * 10 / pi, 9) for x in guesses) == [-2.5, -1.5, -0.5, 0.5, 1.5, 2.5]
+
+
+def test_a_root_is_proved_in_a_box_that_is_not_larger_than_its_errors():
+    found = series(lambda s: s.cosh(), 40.0, count=256)
+    exact = acb(0, arb.pi() / 20)
+    box = found.proved(acb(0, exact.imag.mid()))
+    assert box is not None and box.contains(exact)
+    assert max(float(box.real.rad()), float(box.imag.rad())) < 1e-30
+    assert found.proved(acb(0, exact.imag.mid() + arb("0.2"))) is None  # between two roots
+
+
 def test_a_real_root_is_one_root_where_its_box_reaches_beyond_the_axis():
     found = series(lambda s: s - 3, 5.0)
     box = acb(arb(0.3, 1e-9), arb(1e-16, 1e-15))
