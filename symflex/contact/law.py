@@ -147,7 +147,8 @@ def with_environment(
         elements[_free(f"environment_{key}", elements)] = {"type": kind, attached.name: at, key: value}
     spec |= {"parameters": parameters, "elements": elements}
     spec |= {"definitions": definitions} if definitions else {}
-    spec.pop("ports", None)  # a wall would hold one
+    # A wall may hold a port at a node; one of an input and an output makes a node.
+    spec["ports"] = {name: port for name, port in spec.get("ports", {}).items() if "at" not in port}
     return Source(f"{source.name} with {environment.text}", write(spec))
 
 

@@ -75,6 +75,15 @@ def with_fields(given: Specified, draft: Draft) -> Draft:
     return replace(draft, fields=with_brackets_opened(given.reader, meant, has_coordinate=has_coordinate))
 
 
+def with_ports(given: Specified, draft: Draft) -> Draft:
+    """Return a draft in which every port is at a node."""
+    if not given.sections["ports"]:
+        return draft
+    from symflex.model.ports import with_port_nodes  # few models have one
+
+    return with_port_nodes(given, draft)
+
+
 def with_nodes(given: Specified, draft: Draft) -> Draft:
     """Return a draft in which every node has a domain, by what is attached to it."""
     measure = constant_measure(draft.declared, draft.inherited, draft.definitions)
@@ -97,6 +106,7 @@ PASSES = (
     Pass("cycles", "f in Hz and n in rpm become 2 pi f, where the product has no 2 pi", with_turns_read),
     Pass("motion", "energies and equations become linear at the operating point", with_motion_linear),
     Pass("fields", "field equations are read, their brackets opened", with_fields),
+    Pass("ports", "a port of an input and an output becomes a node", with_ports),
     Pass("nodes", "every node gets the domain of what is attached to it", with_nodes),
     Pass("roots of s", "s^(1/2), and exp of it, become blocks", lambda _, d: with_branches(d, d.names)),
     Pass("delays", "exp(-s*T) becomes a block", lambda _, d: with_written_delays(d, d.names)),

@@ -4,21 +4,59 @@ Input: a section of a specification, or the text of ``--port``, and the model. O
 :class:`~symflex.model.ContactPort`, whose effort and flow follow from the domain of its node.
 
     [ports]
-    tip = { at = "tip" }            # force and velocity, where the node moves in translation
-    jaw = { at = ["a", "b"] }       # between two nodes: a force and its reaction, the relative velocity
+    tip  = { at = "tip" }                      # force and velocity, where the node has an x
+    jaw  = { at = ["a", "b"] }                 # a force and its reaction, the relative velocity
+    hand = { force = "F", velocity = "V" }     # an input and an output, of equations or fields
+
+Equations have no nodes. There a port names a free input and the output that is its dual. It becomes a node
+of its own name (:func:`with_port_nodes`): what is delivered into the node adds to the input, and the node
+moves as the output says.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import chain, count
+from typing import TYPE_CHECKING
+
+from symflex.algebra import LAPLACE
 from symflex.errors import Span, Text, UsageError, nearest, refused
-from symflex.model.model import INPUT_KINDS, PORT_PAIRS, ContactPort, Model, NetworkNode, NodeReference
-from symflex.model.network import domain_of, read_reference, variable_of
+from symflex.expressions import (
+    Equation,
+    Expression,
+    Name,
+    Product,
+    negative,
+    product_of,
+    replace_values,
+    sum_of,
+)
+from symflex.library.elements import ELEMENTS, THROUGH_NAME
+from symflex.model.model import (
+    INPUT_KINDS,
+    PORT_PAIRS,
+    ContactPort,
+    Model,
+    NetworkNode,
+    NodeReference,
+    Signal,
+    rewritten,
+)
+from symflex.model.network import DraftElement, domain_of, read_reference, variable_of
 from symflex.model.reading import Reader
 from symflex.model.scope import LISTED_NAMES
 from symflex.model.spec import KeyValue, TableValue
 
-KEYS = ("at", "doc")
+if TYPE_CHECKING:
+    from symflex.model.network import Draft
+    from symflex.model.passes import Specified
+
+DELIVERED = {pair.delivered: domain for domain, pair in PORT_PAIRS.items()}
+FOLLOWED = tuple(name for name, kind in INPUT_KINDS.items() if kind.is_imposed and kind.domain in PORT_PAIRS)
+KEYS = ("at", *DELIVERED, *FOLLOWED, "doc")
 EXAMPLE = 'for instance tip = { at = "tip" }'
+PAIR_EXAMPLE = 'for instance hand = { force = "F", velocity = "V" }'
 
 
 def read_ports(reader: Reader, section: TableValue | None, model: Model) -> tuple[ContactPort, ...]:
@@ -46,12 +84,98 @@ def port_named(model: Model, name: str | None) -> ContactPort:
     return port
 
 
+def with_port_nodes(given: Specified, draft: Draft) -> Draft:
+    """Return a draft in which each port of an input and an output is a node, whose source feeds the input."""
+    section = given.sections["ports"]
+    for entry in section.entries if section else ():
+        table = entry.value
+        if isinstance(table, TableValue) and _is_pair(table):
+            draft = _with_node(given.reader, entry, table, draft)
+    return draft
+
+
+def _is_pair(table: TableValue) -> bool:
+    """Tell whether a port is an input and an output in place of a node."""
+    return table.get("at") is None and not {*DELIVERED, *FOLLOWED}.isdisjoint(table.keys())
+
+
+def _with_node(reader: Reader, entry: KeyValue, table: TableValue, draft: Draft) -> Draft:
+    what = f"port '{entry.key}'"
+    reader.keys(table, KEYS, what, PAIR_EXAMPLE)
+    delivered = [key for key in table.keys() if key in DELIVERED]
+    followed = [key for key in table.keys() if key in FOLLOWED]
+    if len(delivered) != 1 or len(followed) != 1:
+        message = f"{what} needs an input that is delivered and an output that is its dual"
+        reader.note("SF217", message, entry.key_span, PAIR_EXAMPLE)
+        return draft
+    domain, kind = DELIVERED[delivered[0]], INPUT_KINDS[followed[0]]
+    if kind.domain != domain:
+        dual = ", ".join(name for name in FOLLOWED if INPUT_KINDS[name].domain == domain)
+        message = f"{what}: the product of {delivered[0]} and {followed[0].replace('_', ' ')} is no power"
+        reader.note("SF219", message, entry.key_span, f"beside {delivered[0]}: {dual}")
+        return draft
+    inputs = {d.input.name: d.input for d in draft.inputs if d.input.kind == "signal"}
+    outputs = {o.name: o for o in draft.outputs}
+    named = []
+    for key, known, group in ((delivered[0], inputs, "free input"), (followed[0], outputs, "output")):
+        text = reader.text(table, key, what)
+        if text is None:
+            return draft
+        if text.value not in known:
+            hint = nearest(text.value, known) or f"{group}s: " + (
+                ", ".join([*known][:LISTED_NAMES]) or "none"
+            )
+            reader.note("SF210", f"{what}: there is no {group} '{text.value[:64]}'", text.span, hint)
+            return draft
+        named.append(text.value)
+    if entry.key in draft.names:
+        reader.note("SF211", f"{what} has the name of something else", entry.key_span, "rename the port")
+        return draft
+    return _driven(draft, entry, domain, named, kind.order or 0)
+
+
+def _driven(draft: Draft, entry: KeyValue, domain: str, pair: Sequence[str], order: int) -> Draft:
+    """Return a draft with the node of a port: ``s^order * node`` is the output, a source feeds the input."""
+    source, output = pair
+    taken = draft.names | {e.name for e in draft.elements} | {entry.key}
+    through = _free(f"{THROUGH_NAME[domain]}_{entry.key}", taken)
+    fed: Expression = sum_of([Name(source), Name(through)])
+    draft = rewritten(draft, lambda e: replace_values(e, {Name(source): fed}))
+    answer = next(o.expression for o in draft.outputs if o.name == output)
+    while order and isinstance(answer, Product) and Name(LAPLACE) in answer.factors:
+        # A velocity s*x is the rate of x: the node moves by x, without an integrator of its own.
+        factors = list(answer.factors)
+        factors.remove(Name(LAPLACE))
+        answer, order = product_of(factors), order - 1
+    node = product_of([*[Name(LAPLACE)] * order, Name(entry.key)])
+    element = ELEMENTS[f"{PORT_PAIRS[domain].delivered}_source"]
+    (place,), (value,) = element.ports, element.parameters
+    feeding = DraftElement(
+        _free(f"feed_{entry.key}", taken),
+        element,
+        ((place, (NodeReference(entry.key, span=entry.key_span),)),),
+        ((value.name, negative(Name(through))),),
+        entry.key_span,
+    )
+    unknown = Signal(through, Equation(node, answer), entry.key_span)
+    return replace(draft, elements=(*draft.elements, feeding), signals=(*draft.signals, unknown))
+
+
+def _free(name: str, taken: set[str]) -> str:
+    """Return a name that nothing has: this one, or with a number."""
+    return next(n for n in chain((name,), (f"{name}_{i}" for i in count(2))) if n not in taken)
+
+
 def _read(reader: Reader, entry: KeyValue, model: Model) -> ContactPort | None:
     what = f"port '{entry.key}'"
     table = reader.table(entry, what, EXAMPLE)
     if table is None:
         return None
-    reader.keys(table, KEYS, what, EXAMPLE)
+    if _is_pair(table):
+        node = next((n for n in model.nodes if n.name == entry.key), None)
+        place = NodeReference(entry.key, span=entry.key_span)
+        return ContactPort(entry.key, (place,), domain_of(place, node), entry.key_span) if node else None
+    reader.keys(table, ("at", "doc"), what, EXAMPLE)
     at = reader.needed(table, "at", entry, f"{what} does not say where it is", EXAMPLE)
     texts = reader.strings(at, f"at of {what}", "the name of a node, or two") if at else None
     if at is None or texts is None:

@@ -23,6 +23,7 @@ from symflex.model.analysis import ANALYSIS_KEYS, DIGITS_LIMIT, FIGURE_KEYS, FIG
 from symflex.model.declarations import ASSUMPTIONS
 from symflex.model.headings import FORMAT_VERSION, NEEDED
 from symflex.model.model import INPUT_KINDS, ROOT_QUANTITIES, TRANSFORMER_SYMBOLS
+from symflex.model.ports import DELIVERED, FOLLOWED
 from symflex.model.reading import NAME
 from symflex.model.sampled import HOLD, RULES
 from symflex.model.scope import RESERVED
@@ -265,8 +266,10 @@ def _field() -> Schema:
 
 def _contact_port() -> Schema:
     at = {"anyOf": [NODE, _several(1, 2)]}
-    said = _said(at, "node that is touched, or two, the second for the reaction")
-    return _closed({"at": said, "doc": TEXT}, ["at"])
+    keys = {"at": _said(at, "node that is touched, or two, the second for the reaction")}
+    keys |= {name: _said(TEXT, f"input that is a {name}, of equations or fields") for name in DELIVERED}
+    keys |= {name: _said(TEXT, f"output that is a {name.replace('_', ' ')}") for name in FOLLOWED}
+    return _closed({**keys, "doc": TEXT})
 
 
 def _printed() -> Schema:

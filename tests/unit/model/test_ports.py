@@ -2,6 +2,7 @@
 
 import pytest
 
+import symflex
 from symflex import pipeline
 from symflex.errors import SpecError, UsageError
 from symflex.model.model import PORT_PAIRS
@@ -82,3 +83,45 @@ def test_units_of_a_pair_multiply_to_a_power():
     for pair in PORT_PAIRS.values():
         effort, flow = (unit_of(unit).dimension for unit in pair.units)
         assert effort * flow == unit_of("W").dimension
+
+
+EQUATIONS = """symflex = 1
+[parameters]
+m = "2 kg"
+[equations]
+unknowns = ["x"]
+equations = ["m*s^2*x = F"]
+[inputs]
+F = { unit = "N" }
+[outputs]
+X = "x"
+V = "s*x"
+[ports]
+"""
+
+
+@pytest.mark.parametrize(
+    ("port", "code", "says"),
+    [
+        ('hand = { force = "F" }', "SF217", "its dual"),
+        ('hand = { velocity = "V" }', "SF217", "delivered"),
+        ('hand = { force = "F", angle = "X" }', "SF219", "no power"),
+        ('hand = { force = "G", velocity = "V" }', "SF210", "no free input 'G'"),
+        ('hand = { force = "F", velocity = "U" }', "SF210", "no output 'U'"),
+        ('hand = { force = "F", velocity = 3 }', "SF206", "string"),
+        ('m = { force = "F", velocity = "V" }', "SF211", "something else"),
+        ('hand = { force = "F", velocity = "V", at_ = "x" }', "SF207", "at_"),
+    ],
+)
+def test_a_port_of_an_input_and_an_output_that_cannot_be_one_is_refused(port, code, says):
+    with pytest.raises(SpecError) as caught:
+        pipeline.loads(EQUATIONS + port + "\n")
+    problem = caught.value.diagnostics[0]
+    assert problem.code == code and says in problem.message
+
+
+def test_equations_are_as_they_were_beside_a_port():
+    with_port = EQUATIONS + 'hand = { force = "F", displacement = "X" }\n'
+    for text in (with_port, EQUATIONS.replace("[ports]\n", "")):
+        receptance = symflex.loads(text).transfer_function("X", "F")
+        assert str(receptance.form()) == "X/F = 1/(m*s^2)"
