@@ -10,7 +10,7 @@ Input: a section of a specification, or the text of ``--port``, and the model. O
 
 Equations have no nodes. There a port names a free input and the output that is its dual. It becomes a node
 of its own name (:func:`with_port_nodes`): what is delivered into the node adds to the input, and the node
-moves as the output says.
+follows the output.
 """
 
 from __future__ import annotations
