@@ -280,6 +280,33 @@ class TransferMatrix(_Indexed):
         """
         return matrices_layer.interaction(self.exact)
 
+    def export(self, target: str = "numpy", name: str = "") -> str:
+        """Return code of all functions and of the matrix, as ``symflex export --matrix`` writes it.
+
+        Parameters
+        ----------
+        target : str
+            ``numpy``, ``array-api``, ``jax``, ``c``, ``matlab``, ``julia`` or ``js``.
+        name : str
+            The file's name without suffix.
+
+        Raises
+        ------
+        UsageError
+            SF902 for another target.
+        """
+        from symflex.codegen.export import Language  # imports numpy
+        from symflex.codegen.exporters import EXPORTERS
+
+        exporter = EXPORTERS.get(target)
+        if not isinstance(exporter, Language):
+            known = [key for key, language in EXPORTERS.items() if isinstance(language, Language)]
+            raise no_such("target", target, known)
+        model = self.exact.model
+        rows = tuple(tuple(f"{y}/{u}" for u in self.inputs) for y in self.outputs)
+        made = matrices_layer.derive_matrix(model, self.outputs, self.inputs, solves=exporter.solves)
+        return replace(exporter, rows=rows).export(model, made.each, name).text
+
     def bind(self, **values: Number) -> BoundTransferMatrix:
         """Return the matrix with the declared values, or the given ones, as a function does."""
         return BoundTransferMatrix(self.exact.bind(values))

@@ -54,6 +54,13 @@ def test_a_matrix_can_be_pickled_as_its_inverse_and_its_numbers_can():
     assert np.array_equal(bound.at(2j), G.bind(k_1=10).at(2j))
 
 
+def test_code_has_a_function_of_the_matrix():
+    assert "def transfer_matrix(" in G.export()
+    assert "transfer_matrix_freq(" in G.export("c")
+    with pytest.raises(symflex.errors.UsageError, match="there is no target 'latex'"):
+        G.export("latex")
+
+
 def test_a_notebook_shows_the_equation_and_a_terminal_the_text():
     assert G._repr_latex_().startswith(r"$\displaystyle \begin{pmatrix} X_{1}(s)")
     assert str(G).startswith("(X_1, X_2) / (F_1, F_2)\n")

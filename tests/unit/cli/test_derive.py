@@ -190,3 +190,24 @@ def test_factors_whose_coefficients_exceed_a_machine_word_have_every_form_and_ar
     for target in ("numpy", "c", "matlab", "julia", "state-space", "latex"):
         options = ("--no-figures", "-o", "fine.tex") if target == "latex" else ()
         assert shell("export", "fine.toml", "--to", target, *options).code == 0, target
+
+
+def test_a_matrix_has_rows_of_outputs_and_columns_of_inputs_as_named(shell):
+    whole = shell("derive", "x.toml", "--matrix", "--json").json
+    assert (whole["schema"], whole["outputs"], whole["inputs"]) == ("symflex.matrix/1", ["X", "V"], ["F"])
+    assert (whole["num"], whole["den"]) == ([["1"], ["s"]], "m*s^2 + k")
+    text = shell("derive", "x.toml", "--matrix", "--out", "V", "--in", "F").out
+    assert text.splitlines()[0] == "V / F"
+
+
+def test_what_only_a_matrix_has_is_refused_without_one_and_the_reverse(shell):
+    for arguments, words in (
+        (("--in", "F"), "add --matrix"),
+        (("--rga",), "add --matrix"),
+        (("--matrix", "--tf", "X/F"), "choose rows and columns with --out and --in"),
+        (("--matrix", "--short", "1%"), "are for single functions"),
+        (("--matrix", "--out", "Y"), "there is no output 'Y'"),
+        (("--matrix", "--rga"), "2 outputs and 1 inputs has no inverse"),
+    ):
+        done = shell("derive", "x.toml", *arguments)
+        assert (done.code, words in done.err) == (2, True), (arguments, done.err)
