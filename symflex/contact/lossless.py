@@ -12,12 +12,19 @@ behind it decides, at a clear angle.
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
-from symflex.algebra import LAPLACE
+from flint import fmpz_mpoly
+
+from symflex.algebra import LAPLACE, Factored
+from symflex.algebra.ring import terms_of
 from symflex.expressions import Attribute, names, names_among, number
 from symflex.library.elements import COMPONENTS
 from symflex.model import ContactPort, Model, PlacedElement
 from symflex.model.model import Definition
+
+if TYPE_CHECKING:
+    from symflex.transfer import BoundTransferFunction
 
 STORES = frozenset(
     "mass spring inertia torsion_spring capacitor inductor acoustic_mass acoustic_compliance".split()
@@ -41,6 +48,35 @@ def without_storage(model: Model, port: ContactPort) -> Model:
         elif not (use.element.type_name in STORES and _is_at(use, port)):
             kept.append(use)
     return replace(model, elements=tuple(kept)) if kept else model
+
+
+def without_inertia(bound: BoundTransferFunction) -> BoundTransferFunction | None:
+    """Return Y without the ``m s`` by which 1/Y grows, where no wave grows as fast; None if there is none.
+
+    Equations of motion have no element that could be left out, and a mass in them does as well as one at a
+    node: ``1/Y - m s`` has the real part of ``1/Y`` on the axis.
+    """
+    ring = bound.ratio.ring
+    num, den = bound.ratio.numerator().expand(), bound.ratio.denominator().expand()
+    of_num, of_den = _highest(num), _highest(den)
+    if of_num is None or of_den is None or of_den[0] != of_num[0] + 1:
+        return None
+    s = ring.generator(ring.names[0])
+    rest = of_num[1] * den - of_den[1] * s * num
+    if of_num[1] * of_den[1] < 0 or rest.is_zero():
+        return None
+    ratio = Factored.polynomial(ring, of_num[1] * num) / Factored.polynomial(ring, rest)
+    return replace(bound, ratio=ratio, parts=None, hidden=())
+
+
+def _highest(polynomial: fmpz_mpoly) -> tuple[int, int] | None:
+    """Return the highest power of s and its coefficient, where no wave or delay multiplies it."""
+    powers = [(dict(places), c) for places, c in terms_of(polynomial) if all(i == 0 for i, _ in places)]
+    degree = max((places.get(0, 0) for places, _ in powers), default=None)
+    others = (dict(places).get(0, 0) for places, _ in terms_of(polynomial))
+    if degree is None or max(others) > degree:
+        return None
+    return degree, next(c for places, c in powers if places.get(0, 0) == degree)
 
 
 def _of_s(definitions: tuple[Definition, ...], model: Model) -> set[str]:

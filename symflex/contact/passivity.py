@@ -22,7 +22,7 @@ from flint import acb_poly, arb
 from symflex.algebra import Factored
 from symflex.balls import precision
 from symflex.contact.environment import Example, destabilising
-from symflex.contact.lossless import without_storage
+from symflex.contact.lossless import without_inertia, without_storage
 from symflex.contact.port import at_port
 from symflex.contact.real_part import ActiveBand, LeastPart, RealPart, least_part, real_part
 from symflex.contact.repair import Repair, repairs
@@ -247,7 +247,11 @@ class _Machine:
                 found = real_part(alike, self.digits)
                 if not found.reasons:
                     return found
-        return real_part(bound, self.digits)
+        found = real_part(bound, self.digits)
+        other = without_inertia(bound) if found.reasons else None
+        if other is not None and not (instead := real_part(other, self.digits)).reasons:
+            return instead
+        return found
 
     def _faults(self, bound: BoundTransferFunction) -> tuple[tuple[str, ...], tuple[str, ...]]:
         """Return what is wrong with poles and at infinity, and what is not proved of that."""

@@ -138,7 +138,7 @@ def _driven(draft: Draft, entry: KeyValue, domain: str, pair: Sequence[str], ord
     """Return a draft with the node of a port: ``s^order * node`` is the output, a source feeds the input."""
     source, output = pair
     taken = draft.names | {e.name for e in draft.elements} | {entry.key}
-    through = _free(f"{THROUGH_NAME[domain]}_{entry.key}", taken)
+    through = _free(f"{THROUGH_NAME[domain]}_into_{entry.key}", taken)
     fed: Expression = sum_of([Name(source), Name(through)])
     draft = rewritten(draft, lambda e: replace_values(e, {Name(source): fed}))
     answer = next(o.expression for o in draft.outputs if o.name == output)

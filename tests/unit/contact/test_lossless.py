@@ -1,6 +1,10 @@
 """What stores energy right at a port is taken away; all else stays."""
 
+import pytest
+
+from symflex import pipeline
 from symflex.contact.lossless import without_storage
+from symflex.contact.passivity import find_passivity
 from symflex.model.ports import port_named
 from tests.unit.contact.machines import ARM, LAGGED, machine
 
@@ -24,3 +28,26 @@ def test_a_body_at_the_port_keeps_its_moment_of_inertia():
     bare = without_storage(model, port_named(model, "tip"))
     load = next(e for e in bare.elements if e.name == "load")
     assert [str(dict(load.values)[n].value) for n in ("m", "J")] == ["0", "2"]
+
+
+WALL = """symflex = 1
+parameters = { m = "0.3 kg", b = "0.7 N*s/m", K = "1 kN/m", T = "1 ms" }
+[equations]
+unknowns = ["x"]
+equations = ["m*s^2*x + b*s*x + K*exp(-s*T/2)*x = F"]
+[inputs]
+F = { unit = "N" }
+[outputs]
+V = "s*x"
+[ports]
+hand = { force = "F", velocity = "V" }
+"""
+
+
+@pytest.mark.parametrize(("stiffness", "is_passive"), [("1.39 kN/m", True), ("1.41 kN/m", False)])
+def test_a_wall_behind_a_mass_in_equations_is_passive_up_to_its_damping_over_half_a_period(
+    stiffness, is_passive
+):
+    # Re Z = b - K sin(omega T/2)/omega, which is negative next to 0 where K T/2 > b.
+    model = pipeline.loads(WALL.replace("1 kN/m", stiffness))
+    assert find_passivity(model, "hand", is_explained=False).passive is is_passive
