@@ -519,9 +519,23 @@ class PassivityOptions:
         metavar="PORT",
         help="Port of [ports], or node; twice: a machine with two ports.  [default: the only one]",
     )
+    over: Sequence[str] = option(
+        (), "--over", multiple=True, metavar="P", help="For which values of a parameter; twice: of two."
+    )
+    limits: tuple[Stated | None, Stated | None] | None = option(
+        None, "--range", **TWO, help="Only values between two; with two parameters the name goes first."
+    )
+    ranges: Sequence[tuple[str, Stated, Stated]] = option(
+        (), "--range-of", nargs=3, multiple=True, hidden=True, metavar="P LO HI"
+    )
     digits: int = option(12, "--digits", least=1, most=100, **SHOWN, help="Correct significant digits.")
     output: str | None = file_option("Figure of the real part over frequency: FILE.pdf, .png, .svg.")
     as_json: bool = option(False, "--json", **JSON)
+
+    @property
+    def stability(self) -> StabilityOptions:
+        """What says the ranges of parameters."""
+        return StabilityOptions("", self.limits, None, None, self.over, self.ranges)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

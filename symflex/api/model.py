@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from symflex.codegen.export import Exporter
     from symflex.contact.coupled import CoupledStability
     from symflex.contact.hybrid import HybridPassivity
+    from symflex.contact.over import PassiveChart, PassiveValues
     from symflex.contact.passivity import PortPassivity
     from symflex.contact.two_ports import TwoPorts
     from symflex.figures import AxesGiven
@@ -572,6 +573,52 @@ class Model:
 
             return find_hybrid(model, port)
         return find_passivity(model, port, checked_digits(digits))
+
+    def passive_values(
+        self,
+        port: str | None,
+        over: str | tuple[str, str],
+        *,
+        ranges: Mapping[str, tuple[float, float]] | None = None,
+        digits: int = 12,
+        **values: Number,
+    ) -> PassiveValues | PassiveChart:
+        """Return for which values of one parameter, or of two, the machine is passive at a port.
+
+        Parameters
+        ----------
+        port : str or None
+            A port of ``[ports]``, or a node; None for the only port.
+        over : str or tuple of str
+            The parameter, or two: then the values of the first at many values of the second.
+        ranges : mapping, optional
+            Ranges in SI units, by default as for :meth:`stability`.
+        digits : int
+            Correct significant digits.
+        **values : number or str
+            In place of declared values.
+
+        Examples
+        --------
+        >>> wall = {"body": {"type": "mass", "at": "x", "m": "1 kg"},
+        ...         "friction": {"type": "damper", "between": ["x", "ground"], "b": "1 N*s/m"},
+        ...         "f": {"type": "force_source", "at": "x", "f": "-K/(tau*s + 1)*x"}}
+        >>> model = Model(parameters={"K": "10 N/m", "tau": "50 ms"}, elements=wall,
+        ...               inputs={"F": {"force": "x"}}, outputs={"X": "x"})
+        >>> print(model.passive_values("x", "K"))
+        K [N/m]   certified: passive at port x
+          examined: 0 < K < 100
+          passive for:
+            0 < K < 20
+        """
+        from symflex.contact.over import passive_over  # imports numpy
+        from symflex.loops.over import with_values
+        from symflex.options import PassivityOptions
+
+        names = (over,) if isinstance(over, str) else tuple(over)
+        each = tuple((name, *ends) for name, ends in (ranges or {}).items())
+        given = PassivityOptions((port,) if port else (), names, None, each, checked_digits(digits))
+        return passive_over(with_values(self.resolved, values), given)
 
     def contact(
         self,

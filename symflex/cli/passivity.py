@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from symflex.cli.analyses import Ranged
 from symflex.cli.command import Specification, command_of
 from symflex.cli.reporting import PICTURES, answer, check_place, note
 from symflex.errors import refused
 from symflex.options import PassivityOptions
 
 
-@command_of("passivity", PassivityOptions)
+@command_of("passivity", PassivityOptions, Ranged)
 def passivity(spec: Specification, given: PassivityOptions) -> int:
     """Print whether SPEC is passive at a port, proved for all frequencies.
 
@@ -20,17 +21,27 @@ def passivity(spec: Specification, given: PassivityOptions) -> int:
     stable (Llewellyn), which is with every pair of passive things that are not connected to each other. If
     [analysis] has a band, the impedance that the first port shows is printed, the second free and held.
 
+    --over K prints for which values of a parameter it is passive, from exact polynomials of lumped models;
+    twice, at many values of the second. With waves or delays values are tried and halved, which proves what
+    lies between them if the impedance or admittance is a straight line in the parameter.
+
     --port names a port of [ports], or a node. -o draws the real part over frequency, active bands shaded.
 
     Exit code 4: it could not be decided.
     """
     from symflex.contact.passivity import driving_function, find_passivity
 
-    if len(given.ports) > 1:
+    if len(given.ports) > 1 and not given.over:
         return _two_ports(spec, given)
     port = next(iter(given.ports), None)
     place = check_place(given.output, PICTURES) if given.output else None
     model = spec.load()
+    if given.over:
+        from symflex.contact.over import passive_over
+
+        values = passive_over(model, given)
+        answer(given.as_json, values.to_json_dict, lambda: str(values))
+        return 0 if values.certified else 4
     if model.sampled is not None and not place:
         from symflex.contact.hybrid import find_hybrid  # few models have a sampled controller
 

@@ -212,6 +212,7 @@ class _Machine:
         real = self._real_part(bound)
         faults, reasons = self._faults(bound)
         is_active = bool(real.active or faults)
+        is_open = bool(reasons)
         reasons = () if is_active and not real.active else (*real.reasons, *reasons)
         found = replace(
             asked,
@@ -229,7 +230,8 @@ class _Machine:
         example = (
             Example((), growing) if growing else destabilising(self.model, self.port, bound, found.active)
         )
-        repair = repairs(self.model, self.port, bound, real, bool(faults), self._checked)
+        check = None if is_open else self._checked
+        repair = repairs(self.model, self.port, bound, real, check, has_faults=bool(faults))
         return replace(found, repair=repair, example=example)
 
     def _real_part(self, bound: BoundTransferFunction) -> RealPart:

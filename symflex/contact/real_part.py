@@ -41,9 +41,10 @@ if TYPE_CHECKING:
 
 BITS = 160  # of values on the axis
 SPARE_DIGITS = 20  # of frequencies at which a value is wanted to so many digits
+ENOUGH = 4  # times the waves up to which poles are counted, where no sign is known beyond
 FURTHER = 60  # steps in which a frequency is sought beyond which the sign is known
-BELOW = 1e9  # the last frequency over the first, where the sign next to 0 is not known
-MOST_INTERVALS = 20_000  # of a search on the axis, whose rest is undecided
+BELOW = 1e3  # the last frequency over the first, where the sign next to 0 is not known
+MOST_INTERVALS = 6_000  # of a search on the axis, whose rest is undecided
 TERMS = 3  # of power series: a value, its slope and its curvature
 NEXT_TO_ZERO = 1e-7  # share of the reach of series about 0, within which a real part is that at 0
 FINE_RATIO = 1.05  # of the ends of pieces on which these series are evaluated
@@ -224,7 +225,7 @@ class _WavePart:
             low = far / BELOW
             reasons.append(f"the real part below {short_hertz(arb(low))} Hz")
         tail = self._tail(waves.frequency_of(1.0))
-        high, beyond = tail or (far, 0)
+        high, beyond = tail or (waves.frequency_of(WAVES * ENOUGH), 0)
         if tail is None:
             reasons.append(f"the real part above {short_hertz(arb(high))} Hz")
         high = max(high, 2 * low)

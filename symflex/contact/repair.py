@@ -88,12 +88,14 @@ def repairs(
     port: ContactPort,
     bound: BoundTransferFunction,
     real: RealPart,
+    check: Check | None,
+    *,
     has_faults: bool,
-    check: Check,
 ) -> Repair:
     """Return the smallest dampers that make a machine passive.
 
-    ``check`` tells of a model whether it is passive, and whether it is proved unstable alone.
+    ``check`` tells of a model whether it is passive, and whether it is proved unstable alone; None where the
+    poles of the machine are not known, so that those of a repaired one would not be.
     """
     reasons = [STORES] if real.active else []
     turned = replace(bound, ratio=1 / bound.ratio, parts=bound.parts and bound.parts[::-1])
@@ -104,8 +106,10 @@ def repairs(
     elif least is not None and least.value < 0:
         with precision(BITS):
             limit = -least.value
-        enough = (put_at(port, "dissipative", float(limit.upper()) * step, is_up=True) for step in STEPS)
+        steps = STEPS if check else ()
+        enough = (put_at(port, "dissipative", float(limit.upper()) * step, is_up=True) for step in steps)
         for put in enough:
+            assert check is not None
             is_passive, is_unstable = check(touched(model, port, [put]))
             if is_passive:
                 parallel = limit, put
