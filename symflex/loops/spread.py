@@ -23,7 +23,7 @@ from flint import acb
 
 from symflex.balls import Branching, Open, branch, precision
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError, UsageError
-from symflex.loops.boxes import BITS, Box, CharacteristicFunction, OpenBox
+from symflex.loops.boxes import BITS, Box, CharacteristicFunction, FirstOrder, OpenBox
 from symflex.loops.chart import Word, count_at
 from symflex.loops.over import characteristic, with_values
 from symflex.loops.stability_map import SCHEMA
@@ -31,11 +31,13 @@ from symflex.model import Model, ModelParameter, spread_box
 from symflex.options import StabilityOptions, Stated, share_of
 from symflex.print.notebook import Printed
 from symflex.print.text import Passage
+from symflex.roots.passivity import energy_proof
 from symflex.roots.pole_zero_map import StabilityVerdict
 from symflex.transfer import Given
 
 Point = tuple[Fraction, ...]  # a value of every parameter, in SI units
 MOST_BOXES = 10_000  # boxes after which it stays undecided: about a minute for lumped loops
+MOST_AT_REST = 200  # boxes on which the model is looked at at rest
 FOLLOWED = 4  # modes of a distributed model whose poles are pushed towards the axis
 TRIES = frozenset(4**i for i in range(8))  # numbers of boxes after which a combination is sought again
 
@@ -139,6 +141,8 @@ def find_spread(
         located = function.located(middle_of(box), FOLLOWED)
         if located.verdict.word != "stable":
             return _at(result, located.verdict, middle_of(box))
+        if (boxes := _boxes_of_rest(function, box)) is not None:
+            return replace(result, word="stable", boxes=boxes)
         poles = [complex(root) for root in located.all_poles if not root.im < 0]
         tried: set[Point] = set()
         for s in sorted(poles, key=lambda s: (reach(function, s, box)[0] + s).real)[-FOLLOWED:]:
@@ -158,6 +162,24 @@ def find_spread(
     reason = next(ends, f"poles may meet the axis in {undecided} of {boxes + undecided} boxes")
     reason = search.over.message if search.over else reason
     return replace(result, boxes=boxes, open_box=search.undecided[0].box, reason=reason)
+
+
+def _boxes_of_rest(function: CharacteristicFunction, box: Box) -> int | None:
+    """Return on how many boxes no pole is at 0, if energy keeps all others on the left; else None."""
+    tf, factors = function.at_rest
+    if not all(low > 0 for low, _ in box):
+        return None
+    energy = energy_proof(tf.model, (), tf.output, function.names)
+    if not (energy.is_passive and energy.rests):
+        return None
+
+    def decide(part: OpenBox) -> Open[OpenBox] | None:
+        with precision(BITS):
+            values = FirstOrder(function, tf, factors, part.box).around(acb(0), range(len(factors)))
+        return Open(part) if any(value.contains(0) for value, _ in values) else None
+
+    search: Branching[OpenBox, None] = branch([OpenBox(box, 0.0)], decide, function.halves, most=MOST_AT_REST)
+    return None if search.undecided else search.spent
 
 
 def _searched(

@@ -131,3 +131,29 @@ def test_a_spread_that_moves_no_pole_is_refused() -> None:
         model.stability(spread=0.1)
     with pytest.raises(UsageError, match="--spread takes no"):
         servo().stability("K", spread=0.1)
+
+
+def cantilever(**bending: object) -> Model:
+    """Return a beam that loses energy in its material and at its tip, clamped unless it is said to slide."""
+    numbers = {"E": 2e11, "I": 4e-9, "rho": 7850, "A": 4.8e-4, "l": 1, "eta": 1e-5, "b": 2}
+    support = {"type": "slider" if bending else "fixed", "at": "p"}
+    return Model(
+        parameters=numbers,
+        elements={
+            "arm": {"type": "beam", "between": ["p", "q"], **{n: n for n in numbers if n != "b"}},
+            "wall": support,
+            "dash": {"type": "damper", "between": ["q", "ground"], "b": "b"},
+        },
+        inputs={"F": {"force": "q"}},
+        outputs={"X": "q"},
+    )
+
+
+def test_what_loses_energy_wherever_it_moves_is_stable_for_all_values_of_seven_parameters() -> None:
+    found = cantilever().stability(spread="60 %")
+    assert found.word == "stable" and found.certified
+    assert found.boxes < 100  # those on which it is looked at at rest
+
+
+def test_a_beam_that_can_slide_away_is_not_stable_though_nothing_supplies_energy() -> None:
+    assert cantilever(slides=True).stability(spread="60 %").word == "marginal"
