@@ -262,13 +262,16 @@ def _answer(model: Model, given: ContactOptions, names: Sequence[str], ranges: M
 
 
 def _of_letter(found: Answer, name: str, scale: Fraction, unit: str) -> Answer:
-    """Return a map over a share in terms of the letter, as far as values are proved: not to infinity."""
+    """Return a map over a share in terms of the letter, as far as values are proved."""
     if not isinstance(found, StabilityMap):
         return found
     ends = [i.high.lower() for i in found.intervals[-1:] if i.high is not None and i.high.contains(1)]
     if not ends:
         return found
-    last, with_end = exact_fraction(ends[0]), replace(found.intervals[-1], high=ends[0])
+    last: Fraction | None = exact_fraction(ends[0])
+    with_end = replace(found.intervals[-1], high=ends[0])
+    if last == 1:  # the share below 1, and so the letter, has no end
+        last, with_end = None, replace(with_end, high=None)
     found = replace(found, limits=(found.limits[0], last), intervals=(*found.intervals[:-1], with_end))
     size = ball(scale)
     return found.in_terms_of(name, unit, lambda g: size * g / (1 - g), lambda g: scale * g / (1 - g))
