@@ -271,7 +271,7 @@ class TransferMatrix(_Indexed):
         return TransferMatrix(matrices_layer.return_difference(self.exact))
 
     def interaction(self) -> matrices_layer.Interaction:
-        """Return static gains, static decoupling and relative gains at s = 0; its text says them in letters.
+        """Return static gains, static decoupling and relative gains at s = 0; ``print`` shows them.
 
         Raises
         ------

@@ -20,11 +20,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from symflex.algebra import LAPLACE, Factored, by_powers
+from symflex.algebra import LAPLACE, NO_KERNELS, Factored, by_powers
 from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import Expression, number, quotient
 from symflex.matrices.inverse import inverse
 from symflex.matrices.transfer_matrix import TransferMatrix, joined_ring, one_table
+from symflex.model.loss_factors import check_causal
 from symflex.print.forms import print_part
 from symflex.print.forms.printed import PrintedForm
 from symflex.print.read_back import read_back
@@ -35,7 +36,7 @@ Gains = tuple[tuple[TransferFunction, ...], ...]  # constants, a row per output
 EXPONENTIAL = "exp"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Interaction:
     """Values of a square matrix at rest, each a constant; what has none there is None."""
 
@@ -44,16 +45,24 @@ class Interaction:
     decoupling: Gains | None  # G(0)^-1; None where that is not finite
     relative: Gains | None  # the relative gain array at s = 0
 
+    def __str__(self) -> str:
+        from symflex.matrices.notations import interaction_text  # which prints these
+
+        return interaction_text(self)
+
     def said(self, gains: Gains) -> tuple[tuple[Expression, ...], ...]:
         """Return constants as an author would write them, each read back."""
         return tuple(tuple(map(_printed, row)) for row in gains)
 
     def values(self, gains: Gains) -> list[list[float]] | None:
-        """Return constants in doubles, None where a parameter has no value."""
+        """Return constants in doubles, None where a parameter has no value or one is complex."""
         try:
-            return [[bind(tf)(0j).real for tf in row] for row in gains]
+            numbers = [[bind(tf)(0j) for tf in row] for row in gains]
         except ModelError:
             return None
+        if any(x.imag for row in numbers for x in row):
+            return None
+        return [[x.real for x in row] for row in numbers]
 
     def numbers(self, gains: Gains, digits: int = 6) -> tuple[tuple[Expression, ...], ...] | None:
         """Return constants in decimals of so many digits, None where a parameter has no value."""
@@ -65,6 +74,7 @@ class Interaction:
 
 def interaction(matrix: TransferMatrix) -> Interaction:
     """Return static gains, static decoupling and relative gains; SF237, SF902 as of an inverse."""
+    check_causal(matrix.model, "a value at s = 0")
     for tf in matrix.each:
         _check_letters(tf)
     turned = inverse(matrix)
@@ -128,7 +138,7 @@ def value_at_rest(tf: TransferFunction) -> TransferFunction | None:
     """
     _check_letters(tf)
     if tf.is_zero:
-        return replace(tf, closed=None, reduced=tf.ratio, hidden=())
+        return _constant(tf, tf.ratio)
     ring, ratio = tf.ratio.ring, Factored.number(tf.ratio.ring, tf.ratio.unit)
     delays = {k.generator: ring.constant(1) for k in tf.kernels.kernels}
     images = [delays.get(name, ring.generator(name)) for name in ring.names]
@@ -146,8 +156,12 @@ def value_at_rest(tf: TransferFunction) -> TransferFunction | None:
         lowest = by_powers(ring, factor, ring.index[LAPLACE])[0]
         rest = rest * Factored.polynomial(ring, lowest) ** exponent
     rest, _ = cancel(rest.numerator(), rest.denominator(), radicals=None if tf.kernels else tf.radicals)
-    made = replace(tf, reduced=rest, closed=None, hidden=(), parts=None, solve=None, with_waves=None)
-    return replace(made, kernels=type(tf.kernels)())
+    return _constant(tf, rest)
+
+
+def _constant(tf: TransferFunction, value: Factored) -> TransferFunction:
+    made = replace(tf, reduced=value, closed=None, hidden=(), parts=None, solve=None, with_waves=None)
+    return replace(made, kernels=NO_KERNELS)
 
 
 def _printed(tf: TransferFunction) -> Expression:

@@ -14,7 +14,16 @@ from functools import cached_property
 from textwrap import wrap
 from typing import TYPE_CHECKING, Final
 
-from symflex.expressions import Expression, format_expression, is_number, names_in, number, quotient, sum_of
+from symflex.expressions import (
+    Expression,
+    Sum,
+    format_expression,
+    is_number,
+    names_in,
+    number,
+    quotient,
+    sum_of,
+)
 from symflex.matrices.colocated import colocated
 from symflex.matrices.interaction import Gains, Interaction
 from symflex.matrices.printed import MatrixForm
@@ -106,6 +115,7 @@ def _picture(head: str, form: MatrixForm, den: str) -> list[str]:
     matrix = [] if is_single and is_number(form.entries[0][0], 1) else [f"[ {row} ]" for row in rows]
     front = format_expression(form.front)
     if is_number(form.den, 1):
+        front = f"({front})" if matrix and isinstance(form.front, Sum) else front
         fraction = [] if is_number(form.front, 1) and matrix else ["", front, ""]
     else:
         bar = max(len(front), len(den))

@@ -28,6 +28,7 @@ from symflex.algebra import NO_KERNELS, Factored, KernelTable, Ring
 from symflex.algebra.dispersion import Dispersion, Kernel
 from symflex.errors import BudgetError, Diagnostic, no_such, refused
 from symflex.model import Input, Model, Output
+from symflex.model.loss_factors import check_causal
 from symflex.transfer import (
     AnyBoundFunction,
     AnyTransferFunction,
@@ -176,6 +177,8 @@ class BoundMatrix(_PairTable[AnyBoundFunction]):
         import numpy as np  # binding needs none of it
 
         points = np.asarray(s, dtype=complex)
+        if not ((points.real == 0) & (points.imag > 0)).all():
+            check_causal(self.source.model, "a value at another s")
         values = [pair.each(points.ravel().tolist()) for pair in self.each]
         return np.array(values, dtype=complex).reshape(*self.shape, *points.shape)
 

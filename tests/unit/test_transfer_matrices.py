@@ -67,6 +67,7 @@ def test_a_notebook_shows_the_equation_and_a_terminal_the_text():
     assert G.to_json_dict()["schema"] == "symflex.matrix/1"
     assert r"\begin{equation}" in G.latex(width="ieee")
     assert G.normal_rank == 2
+    assert "RGA(0) = [" in str(G.interaction())
 
 
 def test_roots_of_the_whole_matrix_follow_the_values_that_were_bound():

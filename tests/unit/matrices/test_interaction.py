@@ -50,6 +50,29 @@ def test_dead_times_are_1_at_rest() -> None:
     assert round(first, 2) == 2.01
 
 
+def test_an_entry_that_is_zero_is_zero_at_rest():
+    text = """
+symflex = 1
+[parameters]
+k = 4
+[inputs]
+u = {}
+v = {}
+[outputs]
+x = "u/(s + k) + v"
+y = "2*v/(s + 1)"
+"""
+    found = interaction(derive_matrix(model_of(text)))
+    assert said(found, found.gains) == [["1/k", "1"], ["0", "2"]]
+    assert found.values(found.relative) == [[1, 0], [0, 1]]
+
+
+def test_loss_factors_have_no_static_gain():
+    text = TWO_MASSES.replace('k = "k_2" }', 'k = "k_2", eta_s = 0.02 }')
+    with pytest.raises(ModelError, match="a value at s = 0"):
+        interaction(derive_matrix(model_of(text)))
+
+
 def test_json_has_letters_and_numbers() -> None:
     document = interaction_json(interaction(derive_matrix(model_of(TWO_MASSES))))
     assert document["schema"] == "symflex.interaction/1"

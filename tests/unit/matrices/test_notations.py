@@ -32,6 +32,20 @@ def test_text_has_the_matrix_beside_its_fraction_and_the_denominator_below() -> 
     ]
 
 
+def test_a_sum_in_front_of_a_matrix_stands_in_parentheses():
+    text = """
+symflex = 1
+[inputs]
+u = {}
+v = {}
+[outputs]
+x = "(s + 1)*u"
+y = "(s + 1)*v"
+"""
+    matrix = derive_matrix(model_of(text))
+    assert "  G(s) = (s + 1) [       ]" in notations.matrix_text(matrix, print_matrix(matrix))
+
+
 def test_text_lists_entries_that_are_too_wide() -> None:
     text = notations.matrix_text(MATRIX, FORM, width=40)
     assert "G(s) = 1/d(s) * N(s)" in text
