@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 from flint import acb
 
-from symflex.balls import precision
+from symflex.balls import opposite, precision
 from symflex.matrices.system_matrix import SystemMatrix, null_vectors
 from symflex.print.roots import SHORT_DIGITS, one_of_each_pair, roots_text
 from symflex.print.text import INDENT, WIDTH, aligned, broken
@@ -118,36 +118,40 @@ def matrix_name(outputs: Sequence[str], inputs: Sequence[str]) -> str:
 
 def directions(matrix: SystemMatrix, rank: int, zeros: Sequence[Root]) -> tuple[ZeroDirection, ...]:
     """Return the directions of zeros where they are unique: inputs of a matrix with as many as its rank."""
-    found = []
-    outputs, inputs = len(matrix.lower), matrix.inputs
-    for zero in zeros:
-        vectors = []
-        for is_input in (True, False):
-            is_wanted = zero.certified and rank == (inputs if is_input else outputs)
-            vectors.append(_direction(matrix, rank, zero, is_input=is_input) if is_wanted else ())
+    found: list[ZeroDirection] = []
+    is_real = matrix.is_real
+    for zero in (zero for zero in zeros if zero.certified):
+        above = next((each for each in found if is_real and is_conjugate(each.zero, zero)), None)
+        if above is not None:
+            vectors = [tuple(x.conjugate() for x in vector) for vector in (above.inputs, above.outputs)]
+        else:
+            vectors = _vectors(matrix, rank, zero)
         if any(vectors):
             found.append(ZeroDirection(zero, *vectors))
     return tuple(found)
 
 
-def _direction(matrix: SystemMatrix, rank: int, zero: Root, *, is_input: bool) -> tuple[acb, ...]:
+def is_conjugate(one: Root, other: Root) -> bool:
+    """Tell whether two roots of a pair are seen as conjugate."""
+    return bool(one.im * other.im < 0) and one.re.overlaps(other.re) and opposite(one.im).overlaps(other.im)
+
+
+def _vectors(matrix: SystemMatrix, rank: int, zero: Root) -> list[tuple[acb, ...]]:
+    """Return the direction of inputs, and of outputs; nothing where one is not unique."""
     with precision(2 * zero.working_bits()):
-        values = matrix.on(zero.enclosure())
-        rows = values.squared(rank)
-        if not is_input:
-            columns: list[dict[int, acb]] = [{} for _ in rows]
-            for i, row in enumerate(rows):
-                for j, x in row.items():
-                    columns[j][i] = x
-            rows = columns
-        vectors = null_vectors(rows, 1)
-        if not vectors:
-            return ()
-        entries = vectors[0][len(matrix.upper) :]
-        largest = max(entries, key=lambda x: float(abs(x).mid()))
-        if largest.contains(0):
-            return ()
-        return tuple(acb(1) if x is largest else x / largest for x in entries)
+        rows = matrix.on(zero.enclosure()).squared(rank)
+        columns: list[dict[int, acb]] = [{} for _ in rows]
+        for i, row in enumerate(rows):
+            for j, x in row.items():
+                columns[j][i] = x
+        found = []
+        for sides, count in ((rows, matrix.inputs), (columns, len(matrix.lower))):
+            vectors = (null_vectors(sides, 1) if rank == count else None) or [[]]
+            entries = vectors[0][len(matrix.upper) :]
+            largest = max(entries, key=lambda x: float(abs(x).mid()), default=acb(0))
+            is_known = not largest.contains(0)
+            found.append(tuple(acb(1) if x is largest else x / largest for x in entries) if is_known else ())
+        return found
 
 
 DIRECTION_DIGITS = 4  # of entries of directions in a terminal

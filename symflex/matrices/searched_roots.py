@@ -16,7 +16,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cached_property
+from math import pi
 
 from flint import acb
 
@@ -29,7 +31,7 @@ from symflex.matrices.matrix_roots import DecouplingZero, MatrixRoots, direction
 from symflex.matrices.system_matrix import SystemMatrix, independent, is_regular
 from symflex.model import Model, with_numbers
 from symflex.model.along import is_tapered
-from symflex.roots import Certificate, Everything, HiddenRoot, PoleZeroMap, Region, Root
+from symflex.roots import Band, Certificate, Everything, HiddenRoot, PoleZeroMap, Region, Root
 from symflex.roots.locate import locate
 from symflex.roots.passivity import EnergyProof, energy_proof
 from symflex.roots.pole_zero_map import AT_REST, NONE_ON_AXIS, StabilityVerdict, hidden_region, judge
@@ -38,6 +40,7 @@ from symflex.roots.root import count_roots, overlap
 from symflex.transfer.derive import nested_transfer
 from symflex.transfer.of_model import assemble_sparse, derive_for_roots
 
+BEYOND = 1 + 1e-9  # how far beyond a root its mode is searched, relative to it
 RANK_BITS = 256  # of the matrix at a point, which proves its normal rank
 POINT = (0.37, 0.61)  # where that is, in abs(s) of the highest pole: far from all roots, most likely
 NOT_FULL = "the normal rank is not proved: more than this was not found"
@@ -67,18 +70,23 @@ class SearchedMatrix:
         hidden = [each.root for each in apart]
         pairs, is_proved = self._independent(max((float(root.size().mid()) for root in poles), default=1.0))
         searched, reasons = [modes], [modes.certificate.reason, None if is_proved else NOT_FULL]
-        invariant: list[Root] = []
+        entries: list[Root] = []
+        missed: list[Root] = []
         if pairs:
             is_square = len(pairs) == len(self.outputs) == len(self.inputs)
             where = modes.region if is_square else hidden_region(modes.region, poles)
             located = self._located(imposed(self.model, pairs), where, [y for y, _ in pairs], _EXAMINED)
             searched.append(located)
-            invariant = _merged([*located.poles, *(h.root for h in located.hidden)])
+            entries = [*located.poles, *(h.root for h in located.hidden)]
             if not is_square:
-                invariant = [root for root in invariant if not self._is_excluded(len(pairs), root)]
+                entries = [root for root in entries if not self._is_excluded(len(pairs), root)]
             reasons.append(located.certificate.reason)
-            reasons.append(NOT_EXCLUDED if not is_square and _without(invariant, hidden) else None)
-        zeros = in_order(_without(invariant, hidden))
+            further = self._modes_up_to([root for root in entries if not _is_among(root, hidden)])
+            if further is not None:
+                reasons.append(further.certificate.reason)
+                missed = [z.root for z in self._apart(further)[1] if not _is_among(z.root, hidden)]
+            reasons.append(NOT_EXCLUDED if not is_square and _without(entries, [*hidden, *missed]) else None)
+        zeros = in_order(_merged(_without(entries, [*hidden, *missed])))
         verdict = self._verdict(modes, [*poles, *modes.unstable], hidden)
         located = PoleZeroMap.of(
             matrix_name(self.outputs, self.inputs),
@@ -99,10 +107,29 @@ class SearchedMatrix:
             self.outputs,
             self.inputs,
             len(pairs),
-            in_order(invariant),
+            in_order(_merged(entries)),
             tuple(apart),
             directions(self._matrix, len(pairs), zeros),
         )
+
+    def _modes_up_to(self, roots: Sequence[Root]) -> PoleZeroMap | None:
+        """Return all modes as far as those of some roots that inputs or outputs may miss reach; else nothing.
+
+        Zeros may be shown that lie beyond the highest pole shown, and so beyond the hidden modes known.
+        """
+        one_of_two = [root for root in roots if not (self._matrix.is_real and root.im < 0)]
+        unsure = [root for root in one_of_two if not self._is_reached(root)]
+        if not unsure:
+            return None
+        highest = max(float(root.size().mid()) for root in unsure) / (2 * pi) * BEYOND
+        model = driven_at_once(self.model, self.outputs, self.inputs)
+        return self._located(model, Band(Fraction(0), Fraction(highest)), self.outputs, _EXAMINED)
+
+    def _is_reached(self, root: Root) -> bool:
+        """Tell whether it is proved that inputs move, and outputs show, all that moves at a root."""
+        with precision(2 * root.working_bits()):
+            values = self._matrix.on(root.enclosure())
+            return values.is_controllable and values.is_observable
 
     @cached_property
     def _energy(self) -> list[EnergyProof]:
@@ -119,11 +146,24 @@ class SearchedMatrix:
         """Return the verdict on the model: by its energy, or that on the modes that one input drives."""
         if self._is_passive:
             unsure = "" if all(proof.rests for proof in self._energy) else NONE_ON_AXIS
-            return judge(poles, unsure, self._energy[0].reason, hidden)
+            verdict = judge(poles, unsure, self._energy[0].reason, hidden)
+            return self._of_a_pair(verdict, hidden) if verdict.word == "unknown" else verdict
         known = modes.verdict
         if count_roots(hidden) == count_roots(h.root for h in modes.hidden):
             return known if hidden or not known.hidden.endswith(AT_REST) else replace(known, hidden="")
         return judge(poles, "" if known.certified else known.reason, hidden=hidden)
+
+    def _of_a_pair(self, verdict: StabilityVerdict, hidden: Sequence[Root]) -> StabilityVerdict:
+        """Return that the model is stable where that is proved of a pair that misses no more on the axis."""
+        (bound,) = derive_for_roots(self.model, [(self.outputs[0], self.inputs[0])])
+        pair = locate(bound, self.region, self.digits, with_zeros=False)
+        missed = count_roots(h.root for h in pair.hidden if h.root.on_imaginary_axis)
+        is_all = missed == count_roots(root for root in hidden if root.on_imaginary_axis)
+        return (
+            replace(pair.verdict, hidden=verdict.hidden)
+            if pair.verdict.word == "stable" and is_all
+            else verdict
+        )
 
     def _located(
         self, model: Model, region: Region | None, read: Sequence[str], judged: PoleZeroMap | None
@@ -216,6 +256,10 @@ def _merged(roots: Sequence[Root]) -> list[Root]:
             is_same = root.certified and other.certified and root.is_zero and other.is_zero
             found[i] = replace(other, multiplicity=other.multiplicity + root.multiplicity, certified=is_same)
     return found
+
+
+def _is_among(root: Root, others: Sequence[Root]) -> bool:
+    return any(overlap(root, other) for other in others)
 
 
 def _without(roots: Sequence[Root], others: Sequence[Root]) -> list[Root]:

@@ -35,6 +35,7 @@ from symflex.algebra import LAPLACE, Factored, Ring, residue
 from symflex.balls import UndecidedError, eliminate
 from symflex.budget import spend
 from symflex.equations import Equations, radicals_of
+from symflex.model.model import IMAGINARY
 from symflex.roots.networks.at_rest import place_on_circles
 from symflex.roots.networks.cramer import bordered
 from symflex.transfer.equations_at import EquationsAt
@@ -76,6 +77,11 @@ class SystemMatrix:
             upper.append({**{j: -c for j, c in lower[i].items()}, place: divisors[i]})
             lower[i] = {place: divisors[i] ** 0}
         return SystemMatrix(EquationsAt(equations), upper, lower, len(inputs))
+
+    @property
+    def is_real(self) -> bool:
+        """Whether values at conjugate s are conjugate: without loss factors."""
+        return IMAGINARY not in self.numeric.equations.ring.index
 
     def on(self, s: acb) -> SystemValues:
         """Return the values on a ball of s [rad/s], at the current precision."""

@@ -129,3 +129,28 @@ def test_loss_factors_leave_the_roots_of_positive_frequencies() -> None:
     text = ENDS.replace('l = "1"', 'l = "1", eta_s = 0.02')
     found = roots_of(model_of(text), modes=1)
     assert found.located.zeros[0].loss_factor() is not None
+
+
+def test_what_is_missed_beyond_the_highest_pole_is_no_zero() -> None:
+    # A uniform load misses the antisymmetric modes of a clamped beam, at whose frequencies the moment at its
+    # end has zeros, too. The second of these lies beyond the second mode that is moved.
+    text = """
+symflex = 1
+[fields.w]
+domain = ["0", "1"]
+equation = "w'''' + s^2*w = p"
+conditions = ["w(0) = 0", "w'(0) = 0", "w(1) = 0", "w'(1) = 0"]
+[inputs]
+p = {}
+[outputs]
+M = "w''(1)"
+"""
+    found = roots_of(model_of(text))
+    # cos q cosh q = 1: symmetric modes at q = 4.73, 11.00, antisymmetric ones at 7.85, 14.14.
+    missed = [
+        float(mpmath.findroot(lambda q: mpmath.cos(q) * mpmath.cosh(q) - 1, q)) ** 2 for q in (7.853, 14.137)
+    ]
+    above = [complex(zero).imag for zero in found.located.zeros if zero.im > 0]
+    assert above == pytest.approx(missed, rel=1e-12)
+    assert [zero.multiplicity for zero in found.located.zeros] == [1] * 4
+    assert found.located.certificate.certified
