@@ -528,6 +528,7 @@ class PassivityOptions:
     ranges: Sequence[tuple[str, Stated, Stated]] = option(
         (), "--range-of", nargs=3, multiple=True, hidden=True, metavar="P LO HI"
     )
+    letters: bool = option(False, "--letters", help="Conditions in letters, of lumped models.")
     digits: int = option(12, "--digits", least=1, most=100, **SHOWN, help="Correct significant digits.")
     output: str | None = file_option("Figure of the real part over frequency: FILE.pdf, .png, .svg.")
     as_json: bool = option(False, "--json", **JSON)

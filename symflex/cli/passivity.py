@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from symflex.cli.analyses import Ranged
 from symflex.cli.command import Specification, command_of
 from symflex.cli.reporting import PICTURES, answer, check_place, note
 from symflex.errors import refused
 from symflex.options import PassivityOptions
+
+if TYPE_CHECKING:
+    from symflex.model import Model
 
 
 @command_of("passivity", PassivityOptions, Ranged)
@@ -25,6 +30,9 @@ def passivity(spec: Specification, given: PassivityOptions) -> int:
     twice, at many values of the second. With waves or delays values are tried and halved, which proves what
     lies between them if the impedance or admittance is a straight line in the parameter.
 
+    --letters prints when the real part is positive at all frequencies, and when the poles lie in the left
+    half-plane, in letters. Passive is then what is at a bound, too.
+
     --port names a port of [ports], or a node. -o draws the real part over frequency, active bands shaded.
 
     Exit code 4: it could not be decided.
@@ -36,6 +44,8 @@ def passivity(spec: Specification, given: PassivityOptions) -> int:
     port = next(iter(given.ports), None)
     place = check_place(given.output, PICTURES) if given.output else None
     model = spec.load()
+    if given.letters:
+        return _in_letters(model, port, given)
     if given.over:
         from symflex.contact.over import passive_over
 
@@ -56,6 +66,24 @@ def passivity(spec: Specification, given: PassivityOptions) -> int:
         save(draw("passivity", [driving_function(model, port)]), place)
         note(f"wrote {place}")
     return 4 if found.passive is None else 0
+
+
+def _in_letters(model: Model, name: str | None, given: PassivityOptions) -> int:
+    """Print when the real part at a port is positive, and when the poles lie on the left, in letters."""
+    from symflex import pipeline
+    from symflex.contact.port import at_port
+    from symflex.letters.real_part import real_part_conditions
+    from symflex.letters.routh import conditions
+    from symflex.model.ports import port_named
+
+    driven, pair = at_port(model, port_named(model, name))
+    found = [real_part_conditions(pipeline.derive_all(driven, [pair])[0]), conditions(driven)]
+    answer(
+        given.as_json,
+        lambda: {"schema": "symflex.passivity/1", "letters": [each.to_json_dict() for each in found]},
+        lambda: "\n\n".join(map(str, found)),
+    )
+    return 0
 
 
 def _two_ports(spec: Specification, given: PassivityOptions) -> int:
