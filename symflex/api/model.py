@@ -617,7 +617,7 @@ class Model:
 
         names = (over,) if isinstance(over, str) else tuple(over)
         each = tuple((name, *ends) for name, ends in (ranges or {}).items())
-        given = PassivityOptions((port,) if port else (), names, None, each, checked_digits(digits))
+        given = PassivityOptions((port,) if port else (), names, None, each, digits=checked_digits(digits))
         return passive_over(with_values(self.resolved, values), given)
 
     def contact(
