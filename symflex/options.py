@@ -469,7 +469,8 @@ class ContactOptions:
         "--environment",
         required=True,
         metavar="LAW",
-        help='What touches it: "k_e + b_e*s + m_e*s^2", spring, damper, mass, spring-damper, wall or any.',
+        help='What touches it: "k_e + b_e*s + m_e*s^2", spring, damper, mass, spring-damper, wall, any, or '
+        "FILE.toml:PORT.",
     )
     over: Sequence[str] = option(
         (),

@@ -62,6 +62,7 @@ MEANT = {  # what one command is called elsewhere, and what to write here
     **dict.fromkeys(("norm", "hinf", "hinfnorm", "h2"), "peak SPEC"),
     **dict.fromkeys(("margin", "margins", "stable", "gain"), "stability SPEC --gain K"),
     **dict.fromkeys(("passive", "impedance", "admittance"), "passivity SPEC --port PORT"),
+    **dict.fromkeys(("touch", "environment", "wall"), 'contact SPEC --port PORT --environment "k_e + b_e*s"'),
     **dict.fromkeys(("tf", "formula", "print", "show", "explain"), "derive SPEC"),
     **dict.fromkeys(("latex", "tex", "numpy", "c", "matlab", "python"), "export SPEC --to TARGET"),
     **dict.fromkeys(("slider", "sliders", "interactive", "html"), "live SPEC"),

@@ -23,6 +23,8 @@ from pathlib import Path
 from flint import acb
 
 from symflex.balls import ball
+from symflex.contact.hybrid import HybridPassivity, find_hybrid
+from symflex.contact.joined import joined
 from symflex.contact.law import (
     ANY,
     Environment,
@@ -35,11 +37,13 @@ from symflex.contact.port import at_port
 from symflex.errors import Diagnostic, Source, SymflexError, UsageError, refused
 from symflex.loops import of_model
 from symflex.loops.chart import StabilityChart
-from symflex.loops.over import characteristic, seen_pair, stability_over
+from symflex.loops.over import characteristic, seen_pair, stability_over, with_values
 from symflex.loops.spread import SpreadStability, find_spread
 from symflex.loops.stability_map import StabilityMap
 from symflex.model import ContactPort, Model, ModelParameter, Setting, load_with
 from symflex.model.ports import port_named
+from symflex.model.spec import read
+from symflex.model.spec.read import NETLISTS
 from symflex.options import ContactOptions, StabilityOptions, gain_ends
 from symflex.print.notebook import Printed
 from symflex.print.text import INDENT, Passage
@@ -58,6 +62,7 @@ LAWS = {
     "electrical": "voltage over current",
     "acoustic": "pressure over flow",
 }
+SPECIFICATIONS = (".toml", *NETLISTS)  # ends of names of files
 HELD = {ANY: "every passive one", "short": "nothing is left there"}  # of environments without elements
 MOTIONS = ("translation", "rotation")  # domains in which an environment is a force over a displacement
 SIZES = {
@@ -72,7 +77,7 @@ SIZES = {
 }
 """Powers of the size at a frequency, and of this, that parameters of elements have."""
 Range = tuple[Fraction, Fraction | None]  # the ends of what a letter may be, in SI units; None without one
-Answer = StabilityMap | StabilityChart | SpreadStability | PoleZeroMap | PortPassivity
+Answer = StabilityMap | StabilityChart | SpreadStability | PoleZeroMap | PortPassivity | HybridPassivity
 
 
 @dataclass(frozen=True)
@@ -90,7 +95,7 @@ class CoupledStability(Printed):
     def is_stable(self) -> bool | None:
         """Whether the machine is stable for all that was asked for; None where that is not proved."""
         answer = self.answer
-        if isinstance(answer, PortPassivity):
+        if isinstance(answer, PortPassivity | HybridPassivity):
             return answer.passive
         if isinstance(answer, StabilityMap):
             if any(not i.poles.is_stable for i in answer.intervals):
@@ -108,20 +113,27 @@ class CoupledStability(Printed):
         if isinstance(self.answer, PoleZeroMap):
             return self.answer.verdict.headline
         if self.is_stable is None:
-            return "not decided for all values"
-        return "stable for all values" if self.is_stable else "not stable for all values"
+            return "not decided"
+        scope = "with all of them" if self.environment.text == ANY else "for all values"
+        return f"stable {scope}" if self.is_stable else f"not stable {scope}"
 
     @property
     def certified(self) -> bool:
         """Whether what was asked for is decided and proved."""
         if isinstance(self.answer, PoleZeroMap):
             return self.answer.verdict.word != "unknown"
-        return self.is_stable is not None if isinstance(self.answer, PortPassivity) else self.answer.certified
+        return (
+            self.is_stable is not None
+            if isinstance(self.answer, PortPassivity | HybridPassivity)
+            else self.answer.certified
+        )
 
     def passages(self) -> list[Passage]:
         """Return what touches the machine, and the answer."""
         port, environment = self.environment.port, self.environment
-        law = LAWS[port.domain] if environment.elements else HELD.get(environment.text, "nothing moves")
+        held = HELD.get(environment.text, "nothing moves")
+        law = LAWS[port.domain] if environment.elements else held
+        law = "of a file" if _file_of(environment.text) else law
         head = f"port {port.name}, environment {environment.text} ({law})"
         if isinstance(self.answer, PoleZeroMap):
             return [Passage([head, *self._poles(self.answer)])]
@@ -177,8 +189,13 @@ def coupled_stability(
     if given.environment == ANY:
         if given.over or given.limits or given.ranges or given.up_to is not None:
             raise refused(f"'{ANY}' takes no --over, --range or --up-to: it has no letters")
-        passivity = find_passivity(load(source, settings), port, given.digits or 12)
-        return CoupledStability(Environment(port, ANY, ()), passivity)
+        model, everything = load(source, settings), Environment(port, ANY, ())
+        if model.sampled is not None:
+            return CoupledStability(everything, find_hybrid(model, given.port))
+        return CoupledStability(everything, find_passivity(model, port, given.digits or 12))
+    if (place := _file_of(given.environment)) is not None:
+        others = {n: v for n, v in settings.items() if n not in own}
+        return _beside(load(source, own), port, load(read(place[0]), {}), place[1], given, others)
     environment = read_environment(machine, port, given.environment)
     model = load(with_environment(source, machine, environment), settings)
     free = tuple(p for p in model.parameters if p.name in environment.letters and p.value is None)
@@ -192,7 +209,7 @@ def coupled_stability(
         raise refused(f"{len(names)} letters have no value: at most two", "give others one: --set NAME=VALUE")
     ranges = {p.name: _range(p, given, len(names)) for p in free}
     endless = [name for name, (_, high) in ranges.items() if high is None]
-    if not endless or given.over:
+    if not endless or (given.over and len(names) > 1):
         return CoupledStability(environment, _answer(model, given, names, ranges))
     if len(names) == 1:
         (name,), (letter,) = names, free
@@ -217,6 +234,27 @@ def coupled_stability(
     both = f"all values of '{names[0]}' and '{names[1]}' together"
     message = f"{both}, without an end, are proved only where the port is passive"
     raise UsageError(Diagnostic("SF804", message, None, f"give ranges: {ranged}"))
+
+
+def _beside(
+    machine: Model,
+    port: ContactPort,
+    other: Model,
+    name: str | None,
+    given: ContactOptions,
+    values: Mapping[str, Setting],
+) -> CoupledStability:
+    """Return what holds of a machine that touches another one at its port of a name."""
+    model = with_values(joined(machine, port, other, port_named(other, name)), values)
+    parts = tuple((each.element.type_name, "", each.name) for each in other.elements)
+    answer = _answer(model, given, given.over, {}) if given.over else _located(model)
+    return CoupledStability(Environment(port, given.environment, parts), answer)
+
+
+def _file_of(text: str) -> tuple[Path, str | None] | None:
+    """Return the specification that an environment names, ``FILE`` or ``FILE:PORT``, with its port."""
+    path, _, port = text.rpartition(":") if Path(text.rpartition(":")[0]).suffix else (text, "", "")
+    return (Path(path), port or None) if Path(path).suffix in SPECIFICATIONS else None
 
 
 def _exactly(model: Model, name: str, limits: Range, given: ContactOptions) -> StabilityMap | None:

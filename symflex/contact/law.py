@@ -12,13 +12,13 @@ from the place, as those of all parameters do.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Container, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import chain, count
 from types import MappingProxyType
 from typing import Any, Final
 
 from symflex.algebra import LAPLACE
+from symflex.contact.port import free_name
 from symflex.errors import Source, Text, refused
 from symflex.expressions import (
     Expression,
@@ -100,7 +100,7 @@ def read_environment(model: Model, port: ContactPort, text: str) -> Environment:
     classes, parts = CLASSES[port.domain], PARTS[port.domain]
     if text in classes:
         taken = {p.name for p in model.parameters} | {d.name for d in model.definitions}
-        letters = tuple(_free(f"{key}_e", taken) for _, key in classes[text])
+        letters = tuple(free_name(f"{key}_e", taken) for _, key in classes[text])
         elements = tuple((*part, letter) for part, letter in zip(classes[text], letters, strict=True))
         return Environment(port, text, elements, letters)
     if text in {name for others in CLASSES.values() for name in others}:
@@ -140,11 +140,11 @@ def with_environment(
     elements: dict[str, object] = {**spec.get("elements", {})}
     if environment.is_wall:
         held = {"at": places[0]} if between[1] == "ground" else {"between": between}
-        elements[_free("wall", elements)] = {"type": "fixed", **held}
+        elements[free_name("wall", elements)] = {"type": "fixed", **held}
     for kind, key, value in environment.elements:
         (attached,) = ELEMENTS[kind].ports
         at = places[0] if attached.terminals == 1 else between
-        elements[_free(f"environment_{key}", elements)] = {"type": kind, attached.name: at, key: value}
+        elements[free_name(f"environment_{key}", elements)] = {"type": kind, attached.name: at, key: value}
     spec |= {"parameters": parameters, "elements": elements}
     spec |= {"definitions": definitions} if definitions else {}
     # A wall may hold a port at a node; one of an input and an output makes a node.
@@ -218,8 +218,3 @@ def _written(model: Model, reference: NodeReference, port: ContactPort) -> str:
         return reference.node
     component = reference.component or ("theta" if port.domain == "rotation" else "y")
     return f"{reference.node}.{component}"
-
-
-def _free(name: str, taken: Container[str]) -> str:
-    """Return a name that nothing has: this one, or with a number."""
-    return next(n for n in chain((name,), (f"{name}_{i}" for i in count(2))) if n not in taken)

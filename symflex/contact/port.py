@@ -42,9 +42,9 @@ RATES = {"translation": "v", "rotation": "omega", "electrical": "v", "acoustic":
 def at_port(model: Model, port: ContactPort, *, is_imposed: bool = False) -> tuple[Model, tuple[str, str]]:
     """Return a model that is driven at a port, and its driving-point function as (output, input)."""
     model, port = _with_clear_nodes(model, port)
-    taken, written = _taken(model), port.name.replace(".", "_")
+    taken, written = taken_names(model), port.name.replace(".", "_")
     through, rate = (
-        _free(f"{name}_{written}", taken) for name in (THROUGH_NAME[port.domain], RATES[port.domain])
+        free_name(f"{name}_{written}", taken) for name in (THROUGH_NAME[port.domain], RATES[port.domain])
     )
     pair = PORT_PAIRS[port.domain]
     delivered, followed = INPUT_KINDS[pair.delivered], INPUT_KINDS[pair.imposed]
@@ -83,7 +83,7 @@ def with_branch(
     ends = (*port.nodes, NodeReference("ground"))[: attached.terminals]
     given = {p.name: number(Fraction(p.default)) for p in element.parameters if p.default is not None}
     use = PlacedElement(
-        _free(name, _taken(model)),
+        free_name(name, taken_names(model)),
         element,
         ((attached.name, ends),),
         ((attached.name, port.domain),),
@@ -102,7 +102,7 @@ def with_hanging_mass(
 
     Each is a type with its values; those of another domain are what is like them there.
     """
-    end = _free("touched_end", _taken(model))
+    end = free_name("touched_end", taken_names(model))
     domain = port.domain
     model = replace(model, nodes=(*model.nodes, NetworkNode(end, domain)))
     at_end = ContactPort(end, (NodeReference(end),), domain)
@@ -136,7 +136,7 @@ def _with_clear_nodes(model: Model, port: ContactPort) -> tuple[Model, ContactPo
         if reference.is_ground or components[reference.node] != ("",):
             continue
         if len(scope.meanings.get(reference.node, ())) > 1:
-            new = _free(f"{reference.node}_node", _taken(model))
+            new = free_name(f"{reference.node}_node", taken_names(model))
             model, port = _renamed(model, port, reference.node, new)
     return model, port
 
@@ -159,13 +159,13 @@ def _renamed(model: Model, port: ContactPort, old: str, new: str) -> tuple[Model
     )
 
 
-def _taken(model: Model) -> Container[str]:
+def taken_names(model: Model) -> set[str]:
     """Return every name of a model."""
     scope = scope_of(model)
     outputs = (o.name for o in model.outputs)
     return {*scope.meanings, *scope.owners, *outputs, *scope.unknowns, *(e.name for e in model.elements)}
 
 
-def _free(name: str, taken: Container[str]) -> str:
+def free_name(name: str, taken: Container[str]) -> str:
     """Return a name that nothing has: this one, or with a number."""
     return next(n for n in chain((name,), (f"{name}_{i}" for i in count(2))) if n not in taken)
