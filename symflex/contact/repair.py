@@ -12,12 +12,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from math import sqrt
 from typing import TYPE_CHECKING
 
 from flint import arb
 
 from symflex.balls import precision
-from symflex.contact.environment import Put, put_at, touched
+from symflex.contact.environment import Kind, Put, put_at, touched
 from symflex.contact.real_part import RealPart, least_part
 from symflex.model import ContactPort, Model
 from symflex.roots.root import figure, real_json
@@ -33,6 +34,10 @@ UNSTABLE = "no damper in series: it leaves the poles where they are"
 NOT_FOUND = "no damper in parallel is proved to be enough"
 UNKNOWN = "no damper in series is proved to be enough, as the real part is not known at all frequencies"
 STEPS = (1.0, 1.01, 1.2, 2.0, 10.0)  # times the least damper that is needed, up to one that is enough
+NO_STORAGE = "no spring or mass in parallel was found to be enough"
+STORING: tuple[Kind, ...] = ("elastic", "inertial")
+POWERS = range(-4, 7)  # of ten, from the size of the impedance at 1 rad/s on
+ALIKE = 1.0005  # how close a value that is enough is to one that is not
 Check = Callable[[Model], tuple[bool, bool]]
 
 
@@ -45,6 +50,8 @@ class Repair:
     )  # the smallest conductance of a damper in parallel, and one that is enough
     series: tuple[arb, Put] | None  # the largest conductance of one in series
     reasons: tuple[str, ...]  # why what is missing is not there
+    # Springs and masses in parallel: one that is not enough, and next to it one that is.
+    storage: tuple[tuple[Put, Put], ...] = ()
 
     def lines(self, digits: int) -> list[str]:
         """Return it for people."""
@@ -55,6 +62,10 @@ class Repair:
                 limit, put = each
                 name = put.type_name.replace("_", " ")
                 lines.append(f"a {name} {how}: {_value(put, limit, word, digits)} ({put.text} is enough)")
+        for less, enough in self.storage:
+            name = enough.type_name.replace("_", " ")
+            unit = f"{float(less.value):.10g} {less.unit}"
+            lines.append(f"a {name} in parallel: {enough.text} is enough, {unit} is not")
         return [*lines, *self.reasons]
 
     def to_json_dict(self, digits: int) -> dict[str, object]:
@@ -69,6 +80,9 @@ class Repair:
                     "unit": put.unit,
                     put.parameter: float(put.value),
                 }
+        for less, enough in self.storage:
+            values = {enough.parameter: float(enough.value), "not_enough": float(less.value)}
+            data[enough.kind] = {"type": enough.type_name, "unit": enough.unit} | values
         return data | {"reasons": list(self.reasons)}
 
 
@@ -130,4 +144,34 @@ def repairs(
         with precision(BITS):
             limit = -1 / least.value
         series = limit, put_at(port, "dissipative", float(limit.lower()), is_up=False)
-    return Repair(parallel, series, tuple(reasons))
+    storage: list[tuple[Put, Put]] = []
+    if bound.is_rational and has_faults and not real.active and check is not None:
+        storage = [pair for kind in STORING if (pair := _storage(model, port, bound, kind, check))]
+        reasons += [] if storage else [NO_STORAGE]
+    return Repair(parallel, series, tuple(reasons), tuple(storage))
+
+
+def _storage(
+    model: Model, port: ContactPort, bound: BoundTransferFunction, kind: Kind, check: Check
+) -> tuple[Put, Put] | None:
+    """Return a spring or a mass in parallel that is not enough, and one that is; None if none was found.
+
+    More than enough is enough, as sums of positive real functions are positive real.
+    """
+    if kind == "inertial" and len(port.nodes) > 1 and port.domain != "electrical":
+        return None
+    scale, less = 1 / (abs(bound(1j)) or 1.0), 0.0
+    for power in POWERS:
+        size = scale * 10.0**power
+        if check(touched(model, port, [put_at(port, kind, size)]))[0]:
+            break
+        less = size
+    else:
+        return None
+    while less and size > less * ALIKE:
+        middle = sqrt(less * size)
+        is_enough = check(touched(model, port, [put_at(port, kind, middle)]))[0]
+        less, size = (less, middle) if is_enough else (middle, size)
+    pair = put_at(port, kind, less or size / 2, is_up=False), put_at(port, kind, size, is_up=True)
+    found = [check(touched(model, port, [put]))[0] for put in pair]
+    return pair if found == [False, True] else None

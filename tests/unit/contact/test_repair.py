@@ -3,7 +3,7 @@
 import pytest
 
 from symflex.contact.passivity import find_passivity
-from tests.unit.contact.machines import DELAYED, machine
+from tests.unit.contact.machines import DELAYED, LAGGED, machine
 
 
 def test_a_damper_in_parallel_makes_up_for_the_lag():
@@ -29,6 +29,14 @@ def test_a_damper_repairs_a_delayed_wall_by_what_the_delay_takes():
     limit, put = find_passivity(machine(DELAYED, K="40 N/m"), "tip").repair.parallel
     assert float(limit.mid()) == pytest.approx(1, abs=1e-12)
     assert float(put.value) == pytest.approx(1, abs=2e-3)
+
+
+def test_a_spring_makes_up_for_a_negative_one():
+    # Z = m s + b + (k - K)/s with K = 20.5 N/m: passive for k >= K.
+    text = LAGGED.replace("-K/(tau*s + 1)*x", "K*x")
+    ((less, enough),) = find_passivity(machine(text), "tip").repair.storage
+    assert (enough.type_name, less.value < 20.5 <= enough.value) == ("spring", True)
+    assert float(enough.value) == pytest.approx(20.5, rel=1e-3)
 
 
 def test_springs_and_masses_are_said_not_to_repair():
