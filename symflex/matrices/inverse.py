@@ -124,7 +124,8 @@ def determinant(matrix: TransferMatrix) -> TransferFunction:
     found = impose_all(matrix)
     pivots = [tf for tf in found.pivots if isinstance(tf, TransferFunction)]
     if len(pivots) < len(found.pivots):
-        raise matrix.nested_error()
+        hint = "numpy.linalg.det of its values has numbers"
+        raise BudgetError(Diagnostic("SF502", "a nested matrix has no determinant in letters", None, hint))
     like = pivots[0] if pivots else next(tf for tf in matrix.each if isinstance(tf, TransferFunction))
     kernels = one_table([tf.kernels for tf in pivots])
     if kernels is None:
