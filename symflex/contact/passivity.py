@@ -26,7 +26,7 @@ from symflex.contact.lossless import without_inertia, without_storage
 from symflex.contact.port import at_port
 from symflex.contact.real_part import ActiveBand, LeastPart, RealPart, least_part, real_part
 from symflex.contact.repair import Repair, repairs
-from symflex.errors import BudgetError, Diagnostic, SymflexError, UsageError
+from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError, UsageError
 from symflex.loops.loop_function import LoopFunction
 from symflex.model import ContactPort, Model, with_numbers
 from symflex.model.loss_factors import check_causal
@@ -275,7 +275,10 @@ class _Machine:
 
     def _checked(self, other: Model) -> tuple[bool, bool]:
         """Tell of another machine whether it is proved passive, and whether it is proved unstable alone."""
-        found = find_passivity(other, self.port, self.digits, is_explained=False)
+        try:
+            found = find_passivity(other, self.port, self.digits, is_explained=False)
+        except ModelError:  # a mass that takes another away leaves equations without solution
+            return False, False
         return found.passive is True, any(f.startswith(UNSTABLE) for f in found.faults)
 
 
