@@ -157,3 +157,23 @@ def test_what_loses_energy_wherever_it_moves_is_stable_for_all_values_of_seven_p
 
 def test_a_beam_that_can_slide_away_is_not_stable_though_nothing_supplies_energy() -> None:
     assert cantilever(slides=True).stability(spread="60 %").word == "marginal"
+
+
+def test_a_mode_that_rests_on_a_damper_for_some_values_keeps_a_machine_from_being_stable() -> None:
+    # Two masses on springs on a damped one: at k_1/m_1 = k_2/m_2 one mode leaves it at rest.
+    model = Model(
+        parameters={"m_1": 1.2, "k_1": 1, "m_2": 1, "k_2": 1},
+        elements={
+            "one": {"type": "mass", "at": "x", "m": "m_1"},
+            "other": {"type": "mass", "at": "y", "m": "m_2"},
+            "table": {"type": "mass", "at": "z", "m": 1},
+            "left": {"type": "spring", "between": ["x", "z"], "k": "k_1"},
+            "right": {"type": "spring", "between": ["y", "z"], "k": "k_2"},
+            "foot": {"type": "spring", "between": ["z", "ground"], "k": 1},
+            "pot": {"type": "damper", "between": ["z", "ground"], "b": 1},
+        },
+        inputs={"F": {"force": "x"}},
+        outputs={"X": "x"},
+    )
+    assert model.stability(spread="1 %").word == "stable"
+    assert model.stability(spread="60 %", budget=0.5).word != "stable"

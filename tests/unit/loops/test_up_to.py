@@ -17,7 +17,7 @@ from symflex import loads
 from symflex.balls import precision, series_terms
 from symflex.loops.over import characteristic
 from symflex.loops.patches import patch
-from symflex.loops.up_to import Path, PolesUpTo
+from symflex.loops.up_to import BoxesUpTo, Path, PolesUpTo
 
 BECK, BECK_OMEGA = 20.0509536189737, 11.0155576409229  # EI/l^2, rad/s
 
@@ -447,6 +447,15 @@ def test_an_arc_is_free_if_no_factor_meets_it(meets, expected):
     poles = of_polynomials(poles_up_to(FOLLOWER, "P", (Fraction(19), Fraction(21)), 6), (1, 1), meets)
     values = poles._on(((Fraction(20), Fraction(20)),))
     assert poles._is_free(values, poles._path("arc", Fraction(6))) is expected
+
+
+@pytest.mark.parametrize(("factor", "is_free"), [((-15, 2), False), ((-14, 2), True)])
+def test_a_box_is_open_while_a_pole_may_meet_its_arc(factor, is_free):
+    # 7.5 is the radius of the arc; the axis is clear.
+    poles = of_polynomials(poles_up_to(FOLLOWER, "P", (Fraction(19), Fraction(21)), 6), factor)
+    box = BoxesUpTo(poles).narrowed(BoxesUpTo(poles).whole(poles.ranges))
+    assert poles.axis.end == Fraction(15, 2) and box.is_bounded
+    assert not box.pieces[0] and bool(box.pieces[-1]) is not is_free
 
 
 def test_poles_meet_within_the_piece_that_is_asked_for_or_none_is_known():

@@ -3,7 +3,7 @@
 from math import pi
 
 import pytest
-from flint import acb, arb, ctx
+from flint import acb, acb_poly, arb, ctx
 
 from symflex.roots.networks.disc_search import DiscSide
 from symflex.roots.networks.disc_series import DiscSeries, RootNearCircleError, points_needed
@@ -93,6 +93,25 @@ def test_a_root_is_proved_in_a_box_that_is_not_larger_than_its_errors():
     assert box is not None and box.contains(exact)
     assert max(float(box.real.rad()), float(box.imag.rad())) < 1e-30
     assert found.proved(acb(0, exact.imag.mid() + arb("0.2"))) is None  # between two roots
+
+
+def near(off, *coefficients):
+    """Return a polynomial from which a function differs by up to ``off``, its slope by nothing."""
+    return DiscSeries(arb(1), acb_poly([*coefficients]), arb(off), arb(0), BITS)
+
+
+def test_a_box_holds_the_root_of_every_function_that_a_series_stands_for():
+    box = near(0.1, -0.5, 1).proved(acb(0.5))
+    assert box is not None and box.contains(acb(0.4)) and box.contains(acb(0.6))
+
+
+def test_a_box_in_which_there_may_be_two_roots_is_none():
+    # x^2 - 0.01, or x^2 itself.
+    assert near(0.01, -0.01, 0, 1).proved(acb(0.1)) is None
+    # x^19 - a x + b has two roots next to 0.95, 0.0014 apart, where its slope is 0.1.
+    a = 19 * 0.95**18 - 0.1
+    steep = near(3e-5, a * 0.95 - 0.95**19, -a, *[0] * 17, 1)
+    assert steep.proved(acb(0.95)) is None
 
 
 def test_a_real_root_is_one_root_where_its_box_reaches_beyond_the_axis():
