@@ -277,7 +277,7 @@ def matrix_display(matrix: TransferMatrix, form: MatrixForm, width_mm: float | N
     room = None if width_mm is None else max(width_mm, NARROWEST_MM) / EM_MM
     named = next((n for n in (0, 1, 2) if room is None or page.line(n)[1] <= room), 2)
     line, _ = page.line(named)
-    display = f"\\begin{{equation}}\n  \\label{{eq:{page.label}}}\n  {line}\n\\end{{equation}}"
+    display = f"\\begin{{equation}}\n  \\label{{{page.label}}}\n  {line}\n\\end{{equation}}"
     rows = page.rows(named)
     below = [formula_latex(rows, (), page.labels, width_mm=width_mm)] if rows else []
     return "\n".join([display, *below, *where_latex(form.lines, page.writer, width_mm)])
@@ -308,8 +308,10 @@ class _Latex:
 
     @property
     def label(self) -> str:
-        """What a reference to the equation says: ``G``, or ``X_over_F`` of a single function."""
-        return "G" if self.matrix.shape != (1, 1) else self.matrix.pairs[0][0].name.replace("/", "_over_")
+        """What a reference to the equation says: ``eq:G``, or ``eq:X_over_F`` of a single function."""
+        from symflex.print.latex.equation import equation_label
+
+        return "eq:G" if self.matrix.shape != (1, 1) else equation_label(self.matrix.pairs[0][0].name)
 
     @cached_property
     def _stems(self) -> tuple[str, str]:
