@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+import numpy as np
 import pytest
 
 from symflex.matrices.exact_roots import ExactMatrix
@@ -186,3 +187,38 @@ def test_a_band_leaves_out_what_lies_beyond_it() -> None:
     assert values(found.located.poles) == [-3, -2]
     assert values(found.located.zeros) == [-1]
     assert values(found.invariant_zeros) == [-1]
+
+
+QUADRUPLE_TANK = """
+symflex = 1
+[parameters]
+T_1 = "62 s"
+T_2 = "90 s"
+T_3 = "23 s"
+T_4 = "30 s"
+g_1 = 0.7
+g_2 = 0.6
+[inputs]
+v_1 = {}
+v_2 = {}
+[outputs]
+y_1 = "3.7*(g_1*v_1 + (1 - g_2)*v_2/(1 + s*T_3))/(1 + s*T_1)"
+y_2 = "4.7*((1 - g_1)*v_1/(1 + s*T_4) + g_2*v_2)/(1 + s*T_2)"
+"""
+
+
+@pytest.mark.parametrize(("split", "place"), [("0.6", -1), ("0.3", 0), ("0.2", 1)])
+def test_valves_of_the_quadruple_tank_move_a_zero_into_the_right_half_plane(split: str, place: int) -> None:
+    """Johansson (2000): one zero is in the left half-plane for g_1 + g_2 > 1, in the right one below.
+
+    Time constants are those of 2.6/(62 s + 1), 1.5/((23 s + 1)(62 s + 1)), 1.4/((30 s + 1)(90 s + 1)) and
+    2.8/(90 s + 1), which Bequette (Process control, section 14.8) prints for the first operating point.
+    """
+    model = model_of(QUADRUPLE_TANK.replace("g_2 = 0.6", f"g_2 = {split}"))
+    first, second = sorted(values(roots_of(model).located.zeros), key=lambda z: z.real)
+    # (1 + s T_3)(1 + s T_4) = (1 - g_1)(1 - g_2)/(g_1 g_2)
+    g = float(split)
+    ratio = 0.3 * (1 - g) / (0.7 * g)
+    expected = np.roots([23 * 30, 53, 1 - ratio])
+    assert sorted([first.real, second.real]) == pytest.approx(sorted(expected), abs=1e-12)
+    assert (second.real > 0) - (second.real < 0) == place
