@@ -12,7 +12,15 @@ from symflex.cli.command import Specification, command_of
 from symflex.cli.reporting import PICTURES, check_place, note, write
 from symflex.cli.respond import show_response
 from symflex.errors import no_such, refused
-from symflex.options import ContactOptions, DrawOptions, PlotOptions, RespondOptions, duration, gain_ends
+from symflex.options import (
+    ContactOptions,
+    DrawOptions,
+    PassivityOptions,
+    PlotOptions,
+    RespondOptions,
+    duration,
+    gain_ends,
+)
 
 if TYPE_CHECKING:
     from symflex.model import Model
@@ -69,8 +77,8 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     passivity --port PORT draws the real part of the driving-point function of a port or node, active bands
     shaded, as 'symflex passivity' proves them.
 
-    z-width --port PORT --environment LAW --over K --over B draws for which values of two parameters the model
-    is stable with an environment, as 'symflex contact' proves it.
+    z-width --port PORT --over K --over B draws for which values of two parameters the model is passive, as
+    'symflex passivity' proves it, or with --environment LAW stable with that, as 'symflex contact' does.
 
     poles_zeros --spread shades where roots lie for all combinations of values, as 'symflex roots' proves it.
 
@@ -185,23 +193,27 @@ def _plot_over(spec: Specification, given: PlotOptions, name: str = STABILITY) -
 
 
 def _plot_z_width(spec: Specification, given: PlotOptions) -> int:
-    """Draw for which values of two parameters SPEC is stable with an environment at a port."""
+    """Draw for which values of two parameters SPEC is stable with an environment, or passive, at a port."""
     from symflex.contact.coupled import coupled_stability
+    from symflex.contact.law import ANY
+    from symflex.contact.over import PassiveChart, passive_over
     from symflex.figures import checked_font, draw_over, save
     from symflex.loops.chart import StabilityChart
 
-    law = given.environment
-    if law is None:
-        raise refused(
-            f"{Z_WIDTH} needs what is at the port", 'for instance --environment "m_e*s^2" --set m_e=1'
-        )
+    if len(given.over) != 2:  # noqa: PLR2004
+        raise refused(f"{Z_WIDTH} is drawn over two parameters: --over K --over B")
     path = check_place(given.output or f"{Path(spec.path).stem}_{Z_WIDTH}.pdf", PICTURES)
     given = replace(given, font=(font := checked_font(given.font, path)))
-    asked = ContactOptions(given.port, law, given.over, given.limits, given.ranges, None, None, given.resolve)
-    found = coupled_stability(spec.source(), asked, spec.settings, spec.allow_outside).answer
-    if not isinstance(found, StabilityChart):
-        raise refused(f"{Z_WIDTH} is drawn over two parameters: --over K --over B")
-    save(draw_over(found, given), path, font=font)
+    found: object
+    if given.environment is None or given.environment == ANY:
+        ports = () if given.port is None else (given.port,)
+        found = passive_over(spec.load(), PassivityOptions(ports, given.over, None, given.ranges))
+    else:
+        law, ranges = given.environment, given.ranges
+        asked = ContactOptions(given.port, law, given.over, None, ranges, None, None, given.resolve)
+        found = coupled_stability(spec.source(), asked, spec.settings, spec.allow_outside).answer
+    if isinstance(found, StabilityChart | PassiveChart):  # of two parameters both are
+        save(draw_over(found, given), path, font=font)
     note(f"wrote {path}")
     return 0
 

@@ -24,6 +24,7 @@ from symflex.transfer import AnyBoundFunction
 
 if TYPE_CHECKING:
     from symflex.analysis.modes import EnclosedModeShape
+    from symflex.contact.over import PassiveChart
     from symflex.loops import AnyLoop, StabilityMap
     from symflex.loops.chart import StabilityChart
 
@@ -201,7 +202,7 @@ def _check_frame(kind: str, frame: AxisLimits) -> None:
 
 
 def draw_over(
-    stability: StabilityChart | StabilityMap, given: PlotOptions, ax: AxesGiven | None = None
+    stability: StabilityChart | StabilityMap | PassiveChart, given: PlotOptions, ax: AxesGiven | None = None
 ) -> Figure:
     """Draw for which values of one parameter, or of two, a model is stable, as options say."""
     from symflex.figures.stability import draw_stability

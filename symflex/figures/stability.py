@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator
 
+from symflex.contact.over import PassiveChart
 from symflex.figures.axes import Canvas, root_figure, set_round_ticks
 from symflex.figures.style import COLOURS, QUIET, label_with_unit
 from symflex.loops.chart import StabilityChart, word_of
@@ -23,15 +24,18 @@ MOST_PIXELS: Final = 1024
 
 
 def draw_stability(
-    stability: StabilityChart | StabilityMap, canvas: Canvas, *, with_box: bool = False
+    stability: StabilityChart | StabilityMap | PassiveChart, canvas: Canvas, *, with_box: bool = False
 ) -> Figure:
-    """Draw for which values of two parameters a model is stable, or the unstable poles over one.
+    """Draw for which values of two parameters a model is stable, or passive, or the unstable poles over one.
 
-    What is undecided is grey, a star marks the declared values, dashes the largest box about them.
+    What is undecided is grey, a star marks the declared values, dashes the largest box about them. Passive
+    values are lines, one at each value of the second parameter at which they are proved.
     """
-    axes = canvas.one_panel(HEIGHT_INCHES if isinstance(stability, StabilityChart) else STRIP_INCHES)
+    axes = canvas.one_panel(STRIP_INCHES if isinstance(stability, StabilityMap) else HEIGHT_INCHES)
     if isinstance(stability, StabilityChart):
         _draw_chart(stability, axes, with_box=with_box)
+    elif isinstance(stability, PassiveChart):
+        _draw_passive(stability, axes)
     else:
         _draw_counts(stability.shown, axes)
     return root_figure(axes)
@@ -73,6 +77,24 @@ def _draw_chart(chart: StabilityChart, axes: Axes, *, with_box: bool) -> None:
     set_round_ticks(axes, 6, 6)
     axes.set_xlabel(label_with_unit(chart.names[0], unit))
     axes.set_ylabel(label_with_unit(chart.names[1], other_unit))
+
+
+def _draw_passive(chart: PassiveChart, axes: Axes) -> None:
+    """Draw the passive values of the first parameter at each value of the second, their ends as dots."""
+    first = chart.slices[0][1]
+    (unit, size), (other_unit, other_size) = first.parameter.counted_in, chart.other.counted_in
+    left, right = (float(x / size) for x in first.limits)
+    for value, values in chart.slices:
+        height = float(value / other_size)
+        for interval in values.passive:
+            ends = [float(x.mid()) / float(size) for x in (interval.low, interval.high)]
+            axes.plot(ends, [height] * 2, "-", color=STABLE, linewidth=4, solid_capstyle="butt", zorder=1)
+            inside = [x for x in ends if left < x < right]
+            axes.plot(inside, [height] * len(inside), ".", color=COLOURS[0], markersize=4, zorder=3)
+    axes.set_xlim(left, right)
+    set_round_ticks(axes, 6, 6)
+    axes.set_xlabel(label_with_unit(first.parameter.name, unit))
+    axes.set_ylabel(label_with_unit(chart.other.name, other_unit))
 
 
 def _draw_counts(stability: StabilityMap, axes: Axes) -> None:

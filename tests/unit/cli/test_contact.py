@@ -5,6 +5,7 @@ import json
 import pytest
 
 from symflex.cli import run
+from tests.unit.contact.machines import LAGGED
 from tests.unit.contact.test_coupled import FORCE_LOOP
 
 TWO = """
@@ -60,10 +61,14 @@ def test_two_ports_are_judged_together(loop, capsys):
 
 
 @pytest.mark.slow
-def test_a_z_width_needs_an_environment(loop, capsys):
+def test_a_z_width_is_drawn_with_an_environment_and_of_passive_values(loop, capsys):
+    assert run(["plot", "loop.toml", "z-width", "--over", "K"]) == 2
+    assert "over two parameters" in capsys.readouterr().err
+    (loop / "wall.toml").write_text(LAGGED, encoding="utf-8")
+    over = ["--over", "K", "--over", "tau", "--range", "K", "0", "99", "--range", "tau", "0.01", "0.2"]
+    assert run(["plot", "wall.toml", "z-width", *over, "-o", "passive.svg"]) == 0
+    assert (loop / "passive.svg").exists()
     over = ["--over", "K", "--over", "k_e", "--range", "K", "0", "12", "--range", "k_e", "0", "1e5"]
-    assert run(["plot", "loop.toml", "z-width", *over]) == 2
-    assert "needs what is at the port" in capsys.readouterr().err
     drawn = ["--environment", "spring", "--resolve", "20 %", "-o", "z.svg"]
     assert run(["plot", "loop.toml", "z-width", *over, *drawn]) == 0
     assert (loop / "z.svg").exists()
