@@ -280,10 +280,22 @@ class RationalOptions:
     form: str = option(
         "product",
         "--form",
-        choices=("product", "modal"),
+        choices=("product", "modal", "state-space"),
         **SHOWN,
-        help="product: poles and zeros; modal: residues.",
+        help="product: poles and zeros; modal: residues; state-space: equations with a proved error.",
     )
+    error: float | None = option(
+        None,
+        "--error",
+        type=float,
+        metavar="SHARE",
+        help="state-space: as few modes as this error allows, relative to the static value.",
+    )
+    band: Ends | None = option(None, "--band", **TWO, help="state-space: band of the error.  [default: all]")
+    is_matrix: bool = option(False, "--matrix", help="state-space: all pairs as one matrix.")
+    inputs: str = option("", "--in", **ENDS, help="--matrix: inputs, such as u1,u2.  [default: all]")
+    outputs: str = option("", "--out", **ENDS, help="--matrix: outputs, such as y1,y2.  [default: all]")
+    output: str | None = file_option("state-space: write a specification, which every export takes.")
     as_json: bool = option(False, "--json", **JSON)
 
 
@@ -506,6 +518,11 @@ class PeakOptions:
     tf: str | None = option(None, "--tf", **ONE_TF)
     band: Ends | None = option(None, "--band", **TWO, help="Only frequencies in a band.  [default: all]")
     digits: int = option(12, "--digits", least=1, most=1000, **SHOWN, help="Correct significant digits.")
+    is_h2: bool = option(False, "--h2", help="The H2 norm instead: the RMS of the output under white noise.")
+    noise: str = option("", "--noise", metavar="EXPR", help="--h2: shape the noise, such as 'w_0/(s + w_0)'.")
+    is_matrix: bool = option(False, "--matrix", help="The largest singular value of all pairs as one matrix.")
+    inputs: str = option("", "--in", **ENDS, help="--matrix: inputs, such as u1,u2.  [default: all]")
+    outputs: str = option("", "--out", **ENDS, help="--matrix: outputs, such as y1,y2.  [default: all]")
     as_json: bool = option(False, "--json", **JSON)
 
 

@@ -39,6 +39,8 @@ if TYPE_CHECKING:
     from symflex import roots as roots_layer
     from symflex.analysis.explanation import ZeroExplanation
     from symflex.analysis.input_shaping import InputShaper
+    from symflex.analysis.norms.energy import H2Norm
+    from symflex.analysis.norms.reduced import ReducedModel
     from symflex.analysis.rational import RationalApproximation
     from symflex.loops.clouds import RootCloud
     from symflex.loops.peak import Peak
@@ -57,6 +59,66 @@ class Analyses(Plotted):
         from symflex.loops.peak import find_peak
 
         return find_peak(self.bound, checked_digits(digits), band)
+
+    def h2(self, noise: str = "") -> H2Norm:
+        """Return the H2 norm: the RMS of the output when white noise of two-sided density 1 per Hz drives it.
+
+        Parameters
+        ----------
+        noise : str
+            What shapes the noise: an expression in s and the model's parameters, such as ``"1/(s + 2)"``.
+
+        Raises
+        ------
+        UncertifiedError
+            SF802 where no principal parts are known; SF405 where stability or residues are not.
+
+        Examples
+        --------
+        >>> import symflex
+        >>> model = symflex.Model(inputs={"u": {}}, outputs={"y": "u/(s + 2)"})
+        >>> print(f"{float(model.transfer_function('y', 'u').bind().h2().value):.6f}")
+        0.500000
+        """
+        from symflex.analysis.norms.energy import find_h2_norm, noise_filter
+
+        return find_h2_norm([[self.bound]], noise_filter(self._stated.model, noise), noise)
+
+    def reduced(
+        self, modes: int | None = None, *, error: float | None = None, band: Ends | None = None
+    ) -> ReducedModel:
+        """Return state equations of a few modes, with a proved error over all frequencies.
+
+        Parameters
+        ----------
+        modes : int, optional
+            How many modes are kept; by default as many as the model's ``[analysis]`` gives, else five.
+        error : float, optional
+            In place of ``modes``: the largest error relative to the static value; as few modes as it takes.
+        band : (float, float), optional
+            Frequencies of the error [Hz]; by default all. If a mode without damping is left out, by default
+            those up to the highest mode that is kept.
+
+        Raises
+        ------
+        UsageError
+            SF902 for a number of modes or an error that is none.
+        UncertifiedError
+            SF802 where no principal parts are known; SF405 where residues are not.
+        ModelError
+            SF236 for functions that grow with frequency; SF402 for an error without static value.
+
+        Examples
+        --------
+        >>> import symflex
+        >>> model = symflex.Model(inputs={"u": {}}, outputs={"y": "u/(s + 1) + u/(s + 100)"})
+        >>> R = model.transfer_function("y", "u").bind().reduced(1)
+        >>> R.certified, len(R.state_space().A), f"{R.error.least.lower().str(4, radius=False)}"
+        (True, 1, '0.01000')
+        """
+        from symflex.analysis.norms.reduced import reduced_model
+
+        return reduced_model([[self.bound]], modes, error, band_in_hertz(band))
 
     def step_response(
         self, times: ArrayLike | None = None, digits: int = 12, shaper: InputShaper | None = None
@@ -425,10 +487,7 @@ class Analyses(Plotted):
         """
         from symflex.analysis.rational import approximate  # not needed for roots
 
-        if band is not None:
-            low, high = band_ends(band)
-            band = float(low), float(high)
-        return approximate(self.bound, modes, form, band)
+        return approximate(self.bound, modes, form, band_in_hertz(band))
 
     def mode_shape(self, mode: Mode, digits: int = 15) -> ModeShape:
         """Return how the model moves in one mode; the largest displacement is 1.
@@ -468,6 +527,14 @@ class Analyses(Plotted):
 
         shapes = mode_shapes(self.bound, plain_mode(mode), checked_digits(digits))
         return tuple(ModeShape(shape, self.bound.source.model) for shape in shapes)
+
+
+def band_in_hertz(band: Ends | None) -> tuple[float, float] | None:
+    """Return the ends of a band in Hz; SF227 for one that is none."""
+    if band is None:
+        return None
+    low, high = band_ends(band)
+    return float(low), float(high)
 
 
 def budget_of(seconds: float | None) -> Budget:

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from symflex import matrices as matrices_layer
-from symflex.api.analyses import budget_of
+from symflex.api.analyses import band_in_hertz, budget_of
 from symflex.api.root import Root, RootTable
 from symflex.api.toolboxes import refuse_attribute
 from symflex.api.transfer_function import (
@@ -31,7 +31,14 @@ from symflex.transfer import NestedTransferFunction as Nested
 if TYPE_CHECKING:
     import numpy as np
     import sympy
+    from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
+
+    from symflex.analysis.norms.energy import H2Norm
+    from symflex.analysis.norms.reduced import ReducedModel
+    from symflex.figures import AxesGiven
+    from symflex.loops.peak import Peak
+    from symflex.options import Ends
 
 Place = int | str
 
@@ -463,6 +470,73 @@ class BoundTransferMatrix(_Indexed):
         values = {name: value for bound in self.exact.each for name, value in bound.values}
         stated = tuple(replace(p, value=values.get(p.name, p.value)) for p in model.parameters)
         return replace(model, parameters=stated)
+
+    def singular_values(self, s: ArrayLike) -> NDArray[np.float64]:
+        """Return all singular values at complex frequencies [rad/s], the largest first.
+
+        The array has the shape (how many) + that of s; not a number at poles.
+
+        Examples
+        --------
+        >>> import symflex
+        >>> model = symflex.Model(inputs={"u": {}, "v": {}}, outputs={"y": "3*u", "z": "4*v"})
+        >>> model.transfer_matrix().bind().singular_values(0)
+        array([4., 3.])
+        """
+        import numpy as np  # binding needs none of it
+
+        rows, columns = self.shape
+        values = np.moveaxis(self.at(s), (0, 1), (-2, -1))
+        is_known = np.isfinite(values).all(axis=(-2, -1))
+        found = np.full((*is_known.shape, min(rows, columns)), np.nan)
+        found[is_known] = np.linalg.svd(values[is_known], compute_uv=False)
+        return np.moveaxis(found, -1, 0)
+
+    def condition_number(self, s: ArrayLike) -> NDArray[np.float64]:
+        """Return the largest over the smallest singular value at complex frequencies [rad/s]."""
+        import numpy as np  # binding needs none of it
+
+        values = self.singular_values(s)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(values[0] / values[-1])
+
+    def sigma_plot(self, *, band: Ends | None = None, ax: AxesGiven | None = None) -> Figure:
+        """Return a figure of the singular values over frequency, in a band [Hz]."""
+        from symflex.figures import draw
+
+        return draw("sigma", self.exact.each, band_hz=band_in_hertz(band), ax=ax)
+
+    def peak(self, *, band: Ends | None = None) -> Peak:
+        """Return the largest singular value over all frequencies, or in a band [Hz], enclosed.
+
+        Examples
+        --------
+        >>> import symflex
+        >>> outputs = {"y": "(u + v)/(s + 1)", "z": "(u - v)/(s + 1)"}
+        >>> model = symflex.Model(inputs={"u": {}, "v": {}}, outputs=outputs)
+        >>> float(model.transfer_matrix().bind().peak().magnitude.mid())  # sqrt(2)
+        1.41421...
+        """
+        from symflex.analysis.norms.matrix_peak import find_matrix_peak
+
+        return find_matrix_peak(self.exact.pairs, band)
+
+    def h2(self, noise: str = "") -> H2Norm:
+        """Return the H2 norm of the matrix; see :meth:`BoundTransferFunction.h2`."""
+        from symflex.analysis.norms.energy import find_h2_norm, noise_filter
+
+        return find_h2_norm(self.exact.pairs, noise_filter(self.exact.source.model, noise), noise)
+
+    def reduced(
+        self, modes: int | None = None, *, error: float | None = None, band: Ends | None = None
+    ) -> ReducedModel:
+        """Return state equations of a few modes, with a proved error of the matrix and of each pair.
+
+        Parameters and errors are those of :meth:`BoundTransferFunction.reduced`.
+        """
+        from symflex.analysis.norms.reduced import reduced_model
+
+        return reduced_model(self.exact.pairs, modes, error, band_in_hertz(band))
 
     def dcgain(self) -> NDArray[np.float64]:
         """Return the limits for s -> 0 from the right, each proved to the last digit."""

@@ -10,8 +10,16 @@ from typing import TYPE_CHECKING
 import click
 
 from symflex.budget import entered_budget
-from symflex.cli.command import Command, Specification, command_of, first_pair, names_in
-from symflex.cli.reporting import answer, emit_json, note, say, show_error, terminal_width
+from symflex.cli.command import (
+    Command,
+    Specification,
+    bound_rows,
+    command_of,
+    first_pair,
+    names_in,
+    refuse_ends,
+)
+from symflex.cli.reporting import answer, emit_json, note, say, show_error, terminal_width, write
 from symflex.errors import BudgetError, refused
 from symflex.options import (
     ColocationOptions,
@@ -20,6 +28,7 @@ from symflex.options import (
     RootsOptions,
     StabilityOptions,
     SweepOptions,
+    band_ends,
 )
 
 if TYPE_CHECKING:
@@ -186,22 +195,48 @@ def _matrix_roots(spec: Specification, given: RootsOptions, chosen: Region | Non
 
 
 @command_of("rational", RationalOptions)
-def rational(spec: Specification, given: RationalOptions) -> None:
+def rational(spec: Specification, given: RationalOptions) -> int:
     """Print a rational approximation of one transfer function of SPEC.
 
     A distributed system keeps as many modes as --modes gives: in product form their poles and zeros, in modal
     form their residues and a static correction. By sampling, symflex finds up to which frequencies the
     approximation is within 1 % and 5 % of the exact function. A lumped system with all its modes is its own
     approximation.
+
+    --form state-space makes state equations of the modes, and proves their largest error at all frequencies
+    (H-infinity). --error finds the fewest modes for an error, --matrix takes all pairs at once, and -o writes
+    a specification that every export takes. Exit code 4: the error is not proved.
     """
     from symflex import pipeline
     from symflex.analysis.rational import approximate
     from symflex.analysis.rational.approximation import rational_json
 
     model = spec.load()
+    more = given.error is not None or given.is_matrix or given.output or given.band
+    if given.form == "state-space" or more:
+        return _reduced(model, given)
+    refuse_ends(given)
     (bound,) = pipeline.derive_for_roots(model, [first_pair(model, given.tf, "showing")], is_explained=True)
     approximation = approximate(bound, given.modes, given.form)
     answer(given.as_json, lambda: rational_json(approximation), lambda: approximation.text(None))
+    return 0
+
+
+def _reduced(model: Model, given: RationalOptions) -> int:
+    """Print state equations with a proved error."""
+    from symflex.analysis.norms.reduced import reduced_model
+
+    if given.form == "modal":
+        raise refused("--form modal has no proved error", "use --form state-space")
+    if given.error is not None and given.modes is not None:
+        raise refused("--modes and --error each say how many modes are kept", "give one of them")
+    low, high = (0.0, 0.0) if given.band is None else map(float, band_ends(given.band))
+    band = None if given.band is None else (low, high)
+    reduced = reduced_model(bound_rows(model, given), given.modes, given.error, band)
+    if given.output:
+        write(given.output, reduced.specification(model.title or given.output))
+    answer(given.as_json, reduced.to_json_dict, lambda: reduced.text(terminal_width()))
+    return 0 if reduced.certified else 4
 
 
 class Ranged(Command):

@@ -11,12 +11,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import Field, dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, TypeVar
+from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar
 
 import click
 
 from symflex.cli.budgeting import budgeted
 from symflex.cli.reporting import keep, note, reporting
+from symflex.errors import refused
 from symflex.errors.diagnostic import counted
 from symflex.options import OUTSIDE, option
 
@@ -25,8 +26,33 @@ if TYPE_CHECKING:
 
     from symflex.errors import Source
     from symflex.model import Model
+    from symflex.transfer import AnyBoundFunction
 
 T = TypeVar("T")
+
+
+class Ends(Protocol):
+    """Options that name the columns and rows of a matrix."""
+
+    @property
+    def inputs(self) -> str:
+        """Names of inputs, between commas."""
+
+    @property
+    def outputs(self) -> str:
+        """Names of outputs, between commas."""
+
+
+class Rows(Ends, Protocol):
+    """Options of one transfer function or of a matrix."""
+
+    @property
+    def tf(self) -> str | None:
+        """The transfer function."""
+
+    @property
+    def is_matrix(self) -> bool:
+        """Whether all are asked for."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -194,3 +220,27 @@ def first_pair(model: Model, tf: str | None, doing: str) -> tuple[str, str]:
         others = ", ".join("/".join(pair) for pair in pairs[1:])
         note(f"{doing} {'/'.join(pairs[0])}; choose with --tf: {others}")
     return pairs[0]
+
+
+def refuse_ends(given: Ends) -> None:
+    """Refuse names of inputs and outputs without the matrix whose rows and columns they choose."""
+    if given.inputs or given.outputs:
+        raise refused("--in and --out choose the columns and rows of a matrix", "add --matrix, or name --tf")
+
+
+def bound_rows(model: Model, given: Rows) -> tuple[tuple[AnyBoundFunction, ...], ...]:
+    """Return the functions asked for with numbers, a row per output; the first pair without ``--matrix``."""
+    from symflex import pipeline
+
+    if not given.is_matrix:
+        refuse_ends(given)
+        return (tuple(pipeline.derive_for_roots(model, [first_pair(model, given.tf, "showing")])),)
+    from symflex.matrices.transfer_matrix import picked
+
+    if given.tf:
+        raise refused("--tf names a single function", "choose rows and columns with --out and --in")
+    outputs, inputs = names_in(given.outputs), names_in(given.inputs)
+    rows = picked("output", outputs, [o.name for o in model.outputs])
+    columns = picked("input", inputs, [i.name for i in model.inputs])
+    every = pipeline.derive_for_roots(model, [(row, column) for row in rows for column in columns])
+    return tuple(tuple(every[i : i + len(columns)]) for i in range(0, len(every), len(columns)))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from symflex.cli.command import Command, Specification, command_of, names_in
+from symflex.cli.command import Command, Specification, command_of, names_in, refuse_ends
 from symflex.cli.reporting import diagnostic_json, emit_json, listed, note, say, show, terminal_width, write
 from symflex.errors import SymflexError, refused
 from symflex.errors.diagnostic import counted, nearest, printable
@@ -166,7 +166,7 @@ def derive(spec: Specification, given: DeriveOptions) -> int:
 
     if given.is_matrix:
         return _matrix(spec, given)
-    refuse_ends(given)
+    refuse_rows(given)
     if given.limits or given.dimensionless:
         return _read_off(spec, given)
     column = _column(given)
@@ -232,10 +232,9 @@ def _column(given: DeriveOptions) -> float | None:
     return column_width(given.width)
 
 
-def refuse_ends(given: DeriveOptions | ExportOptions) -> None:
-    """Refuse names of inputs and outputs without the matrix whose rows and columns they choose."""
-    if given.inputs or given.outputs:
-        raise refused("--in and --out choose the columns and rows of a matrix", "add --matrix, or name --tf")
+def refuse_rows(given: DeriveOptions | ExportOptions) -> None:
+    """Refuse options of a matrix without one."""
+    refuse_ends(given)
     if isinstance(given, DeriveOptions) and given.is_rga:
         raise refused("--rga is for a matrix", "add --matrix")
 
@@ -382,7 +381,7 @@ def export(spec: Specification, given: ExportOptions) -> int:
     if given.is_matrix:
         exporter, pairs = _for_matrix(exporter, model, given)
     else:
-        refuse_ends(given)
+        refuse_rows(given)
         pairs = pipeline.pick_pairs(model, given.tfs)
     derived, reason = pipeline.derive_as(
         model, pairs, representation, solves=exporter.solves, is_read=given.target in ("latex", "typst")

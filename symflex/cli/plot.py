@@ -60,13 +60,15 @@ def draw(spec: Specification, given: DrawOptions) -> int:
 def plot(spec: Specification, given: PlotOptions) -> int:
     """Draw KIND, or a figure that SPEC defines in [figures].
 
-    Kinds are bode, deflection, impulse, locus, modes, nichols, nyquist, poles_zeros, sensitivity, stability
-    and step.
+    Kinds are bode, deflection, impulse, locus, modes, nichols, nyquist, poles_zeros, sensitivity, sigma,
+    stability and step.
 
     modes draws the lowest mode shapes: as many as --modes gives, else [analysis] modes, else five. locus
     --gain K draws the paths of the closed-loop poles as K grows, from certified poles to certified zeros; for
     a distributed system, those of the lowest modes. nyquist and nichols draw transfer functions, or with
     --gain K the loop gain. sensitivity --gain K draws |S| and |T| with their certified peaks.
+
+    sigma draws the singular values of the matrix that all transfer functions, or those of --tf, make.
 
     stability --over T draws the number of unstable poles over a parameter; with two, as --over K --over T, a
     chart with regions, boundaries and the values of SPEC. Ranges are as for 'symflex stability'.

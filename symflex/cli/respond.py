@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from symflex.cli.command import Specification, command_of, first_pair
+from symflex.cli.command import Specification, bound_rows, command_of, first_pair, refuse_ends
 from symflex.cli.reporting import PICTURES, answer, check_place, emit_json, note, say, write
 from symflex.errors import Diagnostic, UncertifiedError, refused
 from symflex.model import read_settings
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from symflex.analysis.time_response import EnclosedResponse
     from symflex.data.measurement.input_signal import InputSignal
     from symflex.data.measurement.record import TimeRecord
-    from symflex.model import Input, Output
+    from symflex.model import Input, Model, Output
     from symflex.roots import PoleZeroMap
     from symflex.transfer import AnyBoundFunction
 
@@ -241,13 +241,43 @@ def peak(spec: Specification, given: PeakOptions) -> int:
     It is certified that no frequency has a larger one; a pole on the imaginary axis makes it infinite. With
     complex coefficients negative frequencies count, too. For stable lumped functions the H2 norm is printed,
     too. Exit code 4: no bound is known beyond some frequency.
+
+    --matrix bounds the largest singular value of all pairs at once. --h2 encloses the H2 norm, also of
+    distributed functions: the RMS of the output when white noise drives the input; --noise shapes it.
     """
     from symflex import pipeline
     from symflex.loops.peak import find_peak
 
     model = spec.load()
+    if given.noise and not given.is_h2:
+        raise refused("--noise shapes the noise of --h2", "add --h2")
+    if given.is_h2:
+        return _h2(model, given)
+    if given.is_matrix:
+        return _largest_of_matrix(model, given)
+    refuse_ends(given)
     (bound,) = pipeline.derive_bound(model, [first_pair(model, given.tf, "showing")])
     found = find_peak(bound, given.digits, given.band)
+    answer(given.as_json, found.to_json_dict, lambda: str(found))
+    return 0 if found.certified else 4
+
+
+def _h2(model: Model, given: PeakOptions) -> int:
+    """Print the H2 norm."""
+    from symflex.analysis.norms.energy import find_h2_norm, noise_filter
+
+    if given.band is not None:
+        raise refused("--h2 is of all frequencies", "leave --band out")
+    norm = find_h2_norm(bound_rows(model, given), noise_filter(model, given.noise), given.noise)
+    answer(given.as_json, norm.to_json_dict, lambda: str(norm))
+    return 0 if norm.certified else 4
+
+
+def _largest_of_matrix(model: Model, given: PeakOptions) -> int:
+    """Print the largest singular value of a matrix."""
+    from symflex.analysis.norms.matrix_peak import find_matrix_peak
+
+    found = find_matrix_peak(bound_rows(model, given), given.band)
     answer(given.as_json, found.to_json_dict, lambda: str(found))
     return 0 if found.certified else 4
 

@@ -49,6 +49,7 @@ FIGURES: dict[str, Drawing] = {
     "nyquist": _later("loops", "draw_nyquist"),
     "passivity": _later("passivity", "draw_passivity"),
     "poles_zeros": _later("poles_zeros", "draw_poles_zeros"),
+    "sigma": _later("sigma", "draw_sigma"),
     "step": partial(_later("in_time", "draw_responses"), "step"),
 }
 
@@ -159,7 +160,7 @@ def part_shown(kind: str, given: PlotOptions) -> tuple[tuple[Fraction, Fraction]
         given.verdict,
         tuple(frequency(each, "--at", "30 or '30 Hz'", is_hertz=True) for each in given.at),
     )
-    is_logarithmic = kind in ("bode", "nichols", "nyquist", "sensitivity")  # without 0
+    is_logarithmic = kind in ("bode", "nichols", "nyquist", "sensitivity", "sigma")  # without 0
     return None if band is None else band_ends(band, above_zero=is_logarithmic), frame
 
 

@@ -256,9 +256,16 @@ class LoopAtOrigin:
 
 
 def loop_at_origin(
-    bound: BoundTransferFunction, polynomials: Sequence[fmpz_mpoly], turn: acb, times: float = 1.0
+    bound: BoundTransferFunction,
+    polynomials: Sequence[fmpz_mpoly],
+    turn: acb,
+    times: float = 1.0,
+    beyond: Sequence[fmpz_mpoly] = (),
 ) -> LoopAtOrigin | None:
-    """Return the parts near 0 along ``turn``, up to the next root times a factor; ``None`` if not known."""
+    """Return the parts near 0 along ``turn``, up to the next root times a factor; ``None`` if not known.
+
+    Roots of the polynomials ``beyond`` do not matter: they may lie nearer.
+    """
     ring = bound.ratio.ring
     orders, parts = [], []
     for polynomial in polynomials:
@@ -268,14 +275,14 @@ def loop_at_origin(
             order = part.order()
             if order is None or part.power != 1:
                 return None
-            lowest = Winding(part).smallest(pi)
+            lowest = inf if any(polynomial is each for each in beyond) else Winding(part).smallest(pi)
         except SymflexError:
             spend()
             return None
         orders.append(order)
         parts.append((part, lowest, product.unit))
     lowest = min(low for _, low, _ in parts)
-    if lowest == -inf:
+    if abs(lowest) == inf:
         return None
     with precision(ORIGIN_BITS):
         for share in SHARES:  # where waves lose energy, a wavenumber may vanish on the circle

@@ -137,9 +137,9 @@ class LoopFunction:
         around, _ = self.on(omega * arb(1, 0.01), bits)
         return bool(around.a.contains(0)) or bool(around.b.contains(0))
 
-    def at_origin(self, times: float = 1.0) -> LoopAtOrigin | None:
+    def at_origin(self, times: float = 1.0, beyond: Sequence[fmpz_mpoly] = ()) -> LoopAtOrigin | None:
         """Return A and B near 0; see :func:`.loop_at_origin`."""
-        return loop_at_origin(self.bound, self.parts, self.turn, times)
+        return loop_at_origin(self.bound, self.parts, self.turn, times, beyond)
 
     def near(self, s: complex, bits: int = 96) -> tuple[complex, complex, complex, complex]:
         """Return A, A', B and B' at a point, divided alike, in doubles and without proof."""

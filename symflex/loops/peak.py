@@ -11,11 +11,10 @@ piece, M just above the largest value met (Moore 1966). The H2 norm: Astrom, Jur
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
-from functools import partial
 from math import inf, pi
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_poly, arb, fmpz_mpoly
+from flint import acb, acb_poly, arb, arb_poly, fmpz_mpoly
 
 from symflex.algebra import NO_KERNELS, Factored, degree_in, real_parts
 from symflex.balls import Open, UndecidedError, ball, bits_for_digits, branch, precision, settled
@@ -43,7 +42,7 @@ if TYPE_CHECKING:
     from symflex.loops.loop import Loop
     from symflex.loops.loop_function import LoopValue
     from symflex.options import Ends
-    from symflex.roots import PolynomialInS, Root
+    from symflex.roots import Root
     from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
 
@@ -68,6 +67,7 @@ class Peak(Printed):
     beyond: arb | None = None
     reasons: tuple[str, ...] = ()  # what is not proved
     h2: arb | None = None  # the H2 norm of a stable rational function
+    what: str = "largest magnitude"  # of a matrix, its largest singular value
 
     @property
     def certified(self) -> bool:
@@ -126,7 +126,7 @@ class Peak(Printed):
         status = "certified" if self.certified else "NOT CERTIFIED"
         lines = [f"{self.tf}{self.unit and f' [{self.unit}]'}   {status}{where}"]
         lines += [f"  not proved: {reason}" for reason in self.reasons]
-        lines.append(f"  largest magnitude {self._shown(self.magnitude)}, {self.place}")
+        lines.append(f"  {self.what} {self._shown(self.magnitude)}, {self.place}")
         return [Passage(lines if self.h2 is None else [*lines, f"  H2 norm {self._shown(self.h2)}"])]
 
     def _shown(self, value: arb) -> str:
@@ -265,7 +265,9 @@ def _of_polynomials(bound: BoundTransferFunction, asked: Peak) -> Peak:
         magnitude, places, rises = _largest(sizes)
     reasons, h2 = () if magnitude.is_finite() else ("a pole may lie on the imaginary axis",), None
     if all(pole.re < 0 for pole in poles):
-        h2 = arb("inf") if degree >= 0 else settled(partial(_h2_norm, above, below, asked.digits), BITS)
+        h2 = arb("inf")
+        if degree < 0:
+            h2 = settled(lambda: h2_norm(above.enclosure(), below.enclosure(), asked.digits), BITS)
     beyond = arb("inf") if rises and level else None
     return replace(asked, magnitude=magnitude, places=places, beyond=beyond, reasons=reasons, h2=h2)
 
@@ -319,9 +321,9 @@ def _largest(sizes: Sequence[tuple[arb, list[arb]]]) -> tuple[arb, tuple[arb, ..
     return magnitude, tuple(x for _, roots in top for x in roots), rises
 
 
-def _h2_norm(above: PolynomialInS, below: PolynomialInS, digits: int) -> arb:
-    """Return the H2 norm of a stable function that falls off, at the current precision."""
-    a, b = (f.enclosure().coeffs()[::-1] for f in (below, above))
+def h2_norm(above: arb_poly, below: arb_poly, digits: int) -> arb:
+    """Return the H2 norm of a stable quotient that falls off, at the current precision."""
+    a, b = (f.coeffs()[::-1] for f in (below, above))
     b, total = [arb(0)] * (len(a) - 1 - len(b)) + b, arb(0)
     while b:
         alpha, beta = a[0] / a[1], b[0] / a[1]
@@ -377,7 +379,8 @@ class _Pieces:
         low, high = 0.0, waves.frequency_of(WAVES)
         if band is not None:
             low, high = (bound.in_root(2 * pi * float(end)) for end in (band.low, band.high))
-        origin = None if low else self.function.at_origin()
+        # Where the numerator vanishes does not matter: that of a small difference may do so next to 0.
+        origin = None if low else self.function.at_origin(beyond=(self.function.a,))
         if origin is not None:
             low = min(float((origin.series[0].reach / 4).lower()), high)
             if origin.orders[0] < origin.orders[1]:

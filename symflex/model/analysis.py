@@ -45,7 +45,10 @@ if TYPE_CHECKING:
 ANALYSIS_KEYS = ("band", "data_end", "modes", "digits", "print", "prefer")
 FIGURE_KEYS = ("kind", "of", "gain", "over", "range", "band", "until", "at", "data", "title", "doc")
 OF_A_LOOP = ("nyquist", "nichols", "sensitivity", "locus")
-FIGURE_KINDS = ("bode", "poles_zeros", *OF_A_LOOP, "stability", "modes", "deflection", "step", "impulse")
+FIGURE_KINDS = (
+    *("bode", "sigma", "poles_zeros", *OF_A_LOOP, "stability", "modes", "deflection"),
+    *("step", "impulse"),
+)
 IN_TIME = ("step", "impulse")
 MODES_LIMIT = 1_000_000
 DIGITS_LIMIT = 10_000

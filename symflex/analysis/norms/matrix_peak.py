@@ -1,0 +1,70 @@
+"""The largest singular value of a transfer matrix over all real frequencies, and where it is.
+
+Input: bound transfer functions, a row per output. Output: a :class:`~symflex.loops.peak.Peak`.
+
+Example: ``[[1/(s + 1), 1/(s + 1)], [1/(s + 1), 1/(s + 1)]]`` has 2, at 0 Hz.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from math import inf, pi
+
+from flint import arb
+
+from symflex.analysis.norms.axis import MatrixOnAxis
+from symflex.analysis.norms.energy import matrix_name
+from symflex.analysis.norms.expanded import BITS, Expanded, expanded
+from symflex.analysis.norms.largest import largest_gain
+from symflex.balls import ball, precision
+from symflex.loops.peak import Peak
+from symflex.options import Ends, band_ends
+from symflex.roots import Band, Position
+from symflex.transfer import AnyBoundFunction
+
+MODES = 8  # whose poles lie in the disc about 0
+WIDTH = 1e-6  # relative distance of the bounds
+DIGITS = 8
+SINGULAR = "largest singular value"
+
+Rows = Sequence[Sequence[AnyBoundFunction]]
+
+
+def matrix_on_axis(rows: Rows, modes: int = MODES) -> MatrixOnAxis:
+    """Return the functions of a matrix in discs that reach beyond so many modes."""
+    every: list[Expanded] = []
+    for bound in (bound for row in rows for bound in row):
+        every.append(expanded(bound, modes, alike=every))
+    width = len(rows[0])
+    return MatrixOnAxis(tuple(tuple(every[i : i + width]) for i in range(0, len(every), width)))
+
+
+def find_matrix_peak(rows: Rows, band: Ends | None = None) -> Peak:
+    """Return the largest singular value over all frequencies, or in a band [Hz], enclosed.
+
+    SF802 where no principal parts are known, SF405 where residues are not known, SF236 for functions that
+    grow with frequency.
+    """
+    name, unit = matrix_name(rows)
+    ends = None if band is None else Band(*band_ends(band))
+    matrix = matrix_on_axis(rows)
+    asked = Peak(name, unit, DIGITS, ends, arb("inf"), (), reasons=matrix.reasons, what=SINGULAR)
+    poles = [part.root for function in matrix.every for part in function.parts]
+    inside = (
+        pole
+        for pole in poles
+        if pole.on_imaginary_axis
+        and not pole.im < 0
+        and (ends is None or ends.classify([pole])[0] is not Position.OUTSIDE)
+    )
+    infinite = next(inside, None)
+    if infinite is not None:
+        return replace(asked, places=(infinite.im,))
+    with precision(BITS):
+        limits = (0.0, inf) if ends is None else tuple(float(2 * pi * ball(x)) for x in (ends.low, ends.high))
+    found = largest_gain(matrix, None if ends is None else (limits[0], limits[1]), WIDTH)
+    beyond = arb("inf") if found.omega == inf else None
+    return replace(
+        asked, magnitude=found.enclosure, places=found.places, beyond=beyond, reasons=found.reasons
+    )
