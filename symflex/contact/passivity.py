@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from symflex.transfer import BoundTransferFunction
 
 BITS = 160
-FURTHER = 40  # steps in which a radius is sought beyond which the size is known
+WIDER, FURTHER = 4.0, 24  # steps, and how many, in which a radius is sought from which on a size is known
 NOT_WRITTEN = "the driving-point function of so large a network is not written out"
 UNSTABLE = "the machine alone is not stable"
 DOUBLE = "a pole on the imaginary axis is not simple"
@@ -311,8 +311,8 @@ def _grows(bound: BoundTransferFunction) -> bool | None:
         return None
     function = LoopFunction.of(bound, bound.num, bound.den)
     start = KernelFunction(bound, Factored.polynomial(bound.ratio.ring, function.b)).frequency_of(1.0)
-    radius = far.least(start)
-    size = None if radius is None else far.size(radius)
+    sizes = (far.size(start * WIDER**i) for i in range(FURTHER))
+    size = next((size for size in sizes if size is not None), None)
     if size is None or size.power > 1:
         return None
     return False if size.power < 1 or size.lead.real > 0 else None
