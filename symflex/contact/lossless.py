@@ -22,6 +22,7 @@ from symflex.expressions import Attribute, names, names_among, number
 from symflex.library.elements import COMPONENTS
 from symflex.model import ContactPort, Model, PlacedElement
 from symflex.model.model import Definition
+from symflex.model.network import variable_of
 
 if TYPE_CHECKING:
     from symflex.transfer import BoundTransferFunction
@@ -45,7 +46,7 @@ def without_storage(model: Model, port: ContactPort) -> Model:
             kept.append(use)
         elif use.element.type_name == BODY and _is_body_at(use, port, model):
             kept.append(replace(use, values=tuple((n, number(0) if n == "m" else e) for n, e in use.values)))
-        elif not (use.element.type_name in STORES and _is_at(use, port)):
+        elif not (use.element.type_name in STORES and _is_at(use, port, model)):
             kept.append(use)
     return replace(model, elements=tuple(kept)) if kept else model
 
@@ -87,13 +88,17 @@ def _of_s(definitions: tuple[Definition, ...], model: Model) -> set[str]:
     return varying
 
 
-def _is_at(use: PlacedElement, port: ContactPort) -> bool:
+def _is_at(use: PlacedElement, port: ContactPort, model: Model) -> bool:
     """Tell whether an element lies between a port and ground, or between both nodes of a port."""
     if any(name == "eta_s" and e != number(0) for name, e in use.values):
         return False
+    nodes = {n.name: n for n in model.nodes}
     ((_, ends),) = use.nodes
-    live = {(r.node, r.component) for r in ends if not r.is_ground}
-    return live == {(r.node, r.component) for r in port.nodes if not r.is_ground}
+    at, own = (
+        {variable_of(r, nodes[r.node], port.domain) for r in references if not r.is_ground}
+        for references in (ends, port.nodes)
+    )
+    return at == own and {domain for _, domain in use.domains} == {port.domain}
 
 
 def _is_body_at(use: PlacedElement, port: ContactPort, model: Model) -> bool:

@@ -18,6 +18,11 @@ def test_a_mass_at_the_port_is_taken_away():
     assert kept(LAGGED) == ["friction", "motor"]
 
 
+def test_a_mass_at_the_deflection_of_a_planar_node_is_at_its_port():
+    load = 'load = { type = "mass", at = "tip.y", m = "1 kg" }'
+    assert "load" not in kept(ARM.replace("servo =", f"{load}\nservo ="))
+
+
 def test_a_mass_whose_force_is_measured_stays():
     assert "body" in kept(LAGGED.replace('X = "x"', 'X = "body.f"'))
 
