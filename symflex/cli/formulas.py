@@ -261,15 +261,15 @@ def _matrix(spec: Specification, given: DeriveOptions) -> int:
     is_json = given.as_json or given.format == "json"
     matrix = derive_matrix(spec.load(), outputs, inputs, representation, is_read=not is_json)
     if given.is_rga:
-        from symflex.matrices.interaction import interaction
+        from symflex.matrices.interaction import interaction, interaction_json, interaction_text
 
         if given.form or given.width or given.format not in ("text", "json"):
             raise refused("--rga prints text or --json, in no form")
         found = interaction(matrix)
         if is_json:
-            emit_json(notations.interaction_json(found))
+            emit_json(interaction_json(found))
         else:
-            say(notations.interaction_text(found, terminal_width()))
+            say(interaction_text(found, terminal_width()))
         return 0
     if matrix.reason:
         note(matrix.reason)

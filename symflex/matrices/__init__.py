@@ -4,12 +4,10 @@ Input: a model, with the names of outputs and inputs. Output: the numerators of 
 denominator, and what follows from these.
 """
 
-from symflex.matrices.interaction import Interaction, interaction
+from symflex.matrices.interaction import Interaction, interaction, interaction_json, interaction_text
 from symflex.matrices.inverse import Imposed, determinant, impose_all, inverse, return_difference
 from symflex.matrices.matrix_roots import DecouplingZero, MatrixRoots, ZeroDirection
 from symflex.matrices.notations import (
-    interaction_json,
-    interaction_text,
     matrix_display,
     matrix_json,
     matrix_latex,

@@ -22,18 +22,22 @@ from fractions import Fraction
 
 from symflex.algebra import LAPLACE, NO_KERNELS, Factored, by_powers
 from symflex.errors import Diagnostic, ModelError
-from symflex.expressions import Expression, number, quotient
+from symflex.expressions import Expression, format_expression, names_in, number, quotient
 from symflex.matrices.inverse import inverse
+from symflex.matrices.notations import drawn_matrix, ends_text
+from symflex.matrices.printed import MatrixForm
 from symflex.matrices.transfer_matrix import TransferMatrix, joined_ring, one_table
 from symflex.model.loss_factors import check_causal
 from symflex.print.forms import print_part
 from symflex.print.forms.printed import PrintedForm
 from symflex.print.read_back import read_back
+from symflex.print.text import INDENT, WIDTH, hanging
 from symflex.transfer import AnyTransferFunction, TransferFunction, bind
 from symflex.transfer.lowest_terms import cancel
 
 Gains = tuple[tuple[TransferFunction, ...], ...]  # constants, a row per output
 EXPONENTIAL = "exp"
+SCHEMA = "symflex.interaction/1"
 
 
 @dataclass(frozen=True, repr=False)
@@ -46,8 +50,6 @@ class Interaction:
     relative: Gains | None  # the relative gain array at s = 0
 
     def __str__(self) -> str:
-        from symflex.matrices.notations import interaction_text  # which prints these
-
         return interaction_text(self)
 
     def said(self, gains: Gains) -> tuple[tuple[Expression, ...], ...]:
@@ -168,3 +170,51 @@ def _printed(tf: TransferFunction) -> Expression:
     form = print_part(tf)
     read_back(tf, PrintedForm(form.name, form.num, form.den, form.where))
     return quotient(form.num, form.den)
+
+
+def interaction_text(found: Interaction, width: int = WIDTH) -> str:
+    """Return static gains, static decoupling and relative gains for a terminal, each with its numbers."""
+    lines = [f"{ends_text(found.matrix.outputs)} / {ends_text(found.matrix.inputs)}", ""]
+    for title, head, gains in _named(found):
+        if gains is None and title == "static decoupling" and found.gains is None:
+            continue
+        if gains is None:
+            lines += [f"{INDENT}{title}: none, a value is infinite at s = 0", ""]
+            continue
+        said = found.said(gains)
+        form = MatrixForm(title, number(1), number(1), said)
+        picture = drawn_matrix(f"{head} = ", form, "1")
+        numbers = found.numbers(gains)
+        lines += [f"{INDENT}{title}", ""]
+        if max(map(len, picture)) <= width or numbers == said:
+            lines += picture
+        else:
+            for i, row in enumerate(said, 1):
+                for j, e in enumerate(row, 1):
+                    lines += hanging(f"{INDENT}{head}_{i}{j} = ", e, width)
+        if numbers is not None and any(names_in(e) for row in said for e in row):
+            lines += ["", *drawn_matrix(" " * len(head) + " = ", replace(form, entries=numbers), "1")]
+        lines.append("")
+    return "\n".join(lines).rstrip()
+
+
+def _named(found: Interaction) -> tuple[tuple[str, str, Gains | None], ...]:
+    return (
+        ("static gains", "G(0)", found.gains),
+        ("static decoupling", "G(0)^-1", found.decoupling),
+        ("relative gains", "RGA(0)", found.relative),
+    )
+
+
+def interaction_json(found: Interaction) -> dict[str, object]:
+    """Return the document ``symflex derive --matrix --rga --json`` prints."""
+    document: dict[str, object] = {
+        "schema": SCHEMA,
+        "outputs": [o.name for o in found.matrix.outputs],
+        "inputs": [i.name for i in found.matrix.inputs],
+    }
+    for title, _, gains in _named(found):
+        said = gains and [[format_expression(e) for e in row] for row in found.said(gains)]
+        values = gains and found.values(gains)
+        document[title.replace(" ", "_")] = gains and {"is": said, "values": values}
+    return document

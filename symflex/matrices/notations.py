@@ -19,13 +19,10 @@ from symflex.expressions import (
     Sum,
     format_expression,
     is_number,
-    names_in,
-    number,
     quotient,
     sum_of,
 )
 from symflex.matrices.colocated import colocated
-from symflex.matrices.interaction import Gains, Interaction
 from symflex.matrices.printed import MatrixForm
 from symflex.matrices.transfer_matrix import TransferMatrix
 from symflex.model import Input, Output
@@ -40,7 +37,6 @@ if TYPE_CHECKING:
     from symflex.print.mathml import MathRow
 
 SCHEMA: Final = "symflex.matrix/1"
-INTERACTION: Final = "symflex.interaction/1"
 APART: Final = "   "  # between the columns of a matrix
 INLINE: Final = 24  # characters of a denominator that stands in a fraction before a matrix
 
@@ -49,10 +45,10 @@ def matrix_text(matrix: TransferMatrix, form: MatrixForm, width: int = WIDTH) ->
     """Return a matrix for a terminal: in one picture, or its entries in lines where that is too wide."""
     naming = Naming((*names_of(matrix.model), *(name for name, _ in (*form.where, *form.laws))))
     whole, below, entry = (_free(naming, *stems) for stems in (("G", "H"), ("d", "D"), ("N", "P")))
-    lines = [f"{_ends(matrix.outputs)} / {_ends(matrix.inputs)}", ""]
+    lines = [f"{ends_text(matrix.outputs)} / {ends_text(matrix.inputs)}", ""]
     named = len(format_expression(form.den)) > INLINE
     den = f"{below}(s)" if named else format_expression(form.den)
-    picture = _picture(f"{whole}(s) = ", form, den)
+    picture = drawn_matrix(f"{whole}(s) = ", form, den)
     is_listed = max(map(len, picture)) > width
     if is_listed:
         between = "_" if max(matrix.shape) > 9 else ""  # noqa: PLR2004 (one digit)
@@ -89,7 +85,8 @@ def _free(naming: Naming, *stems: str) -> str:
     return next((stem for stem in stems if stem not in naming.taken), None) or naming.take(stems[0])[0]
 
 
-def _ends(ends: Sequence[Output | Input]) -> str:
+def ends_text(ends: Sequence[Output | Input]) -> str:
+    """Return the names of outputs or inputs, several in brackets."""
     names = ", ".join(end.name for end in ends)
     return names if len(ends) == 1 else f"({names})"
 
@@ -104,7 +101,7 @@ def _front(form: MatrixForm, den: str) -> str:
     return f"{front}/{den} * "
 
 
-def _picture(head: str, form: MatrixForm, den: str) -> list[str]:
+def drawn_matrix(head: str, form: MatrixForm, den: str) -> list[str]:
     """Return a fraction, and a matrix in brackets beside it."""
     cells = [[format_expression(e) for e in row] for row in form.entries]
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
@@ -166,54 +163,6 @@ def _quantities(matrix: TransferMatrix, width: int) -> list[str]:
             f"{kind}: {', '.join(names)}", width, initial_indent=INDENT, subsequent_indent=INDENT * 2
         )
     return lines
-
-
-def interaction_text(found: Interaction, width: int = WIDTH) -> str:
-    """Return static gains, static decoupling and relative gains for a terminal, each with its numbers."""
-    lines = [f"{_ends(found.matrix.outputs)} / {_ends(found.matrix.inputs)}", ""]
-    for title, head, gains in _named(found):
-        if gains is None and title == "static decoupling" and found.gains is None:
-            continue
-        if gains is None:
-            lines += [f"{INDENT}{title}: none, a value is infinite at s = 0", ""]
-            continue
-        said = found.said(gains)
-        form = MatrixForm(title, number(1), number(1), said)
-        picture = _picture(f"{head} = ", form, "1")
-        numbers = found.numbers(gains)
-        lines += [f"{INDENT}{title}", ""]
-        if max(map(len, picture)) <= width or numbers == said:
-            lines += picture
-        else:
-            for i, row in enumerate(said, 1):
-                for j, e in enumerate(row, 1):
-                    lines += hanging(f"{INDENT}{head}_{i}{j} = ", e, width)
-        if numbers is not None and any(names_in(e) for row in said for e in row):
-            lines += ["", *_picture(" " * len(head) + " = ", replace(form, entries=numbers), "1")]
-        lines.append("")
-    return "\n".join(lines).rstrip()
-
-
-def _named(found: Interaction) -> tuple[tuple[str, str, Gains | None], ...]:
-    return (
-        ("static gains", "G(0)", found.gains),
-        ("static decoupling", "G(0)^-1", found.decoupling),
-        ("relative gains", "RGA(0)", found.relative),
-    )
-
-
-def interaction_json(found: Interaction) -> dict[str, object]:
-    """Return the document ``symflex derive --matrix --rga --json`` prints."""
-    document: dict[str, object] = {
-        "schema": INTERACTION,
-        "outputs": [o.name for o in found.matrix.outputs],
-        "inputs": [i.name for i in found.matrix.inputs],
-    }
-    for title, _, gains in _named(found):
-        said = gains and [[format_expression(e) for e in row] for row in found.said(gains)]
-        values = gains and found.values(gains)
-        document[title.replace(" ", "_")] = gains and {"is": said, "values": values}
-    return document
 
 
 def matrix_json(matrix: TransferMatrix, form: MatrixForm) -> dict[str, object]:

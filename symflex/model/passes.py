@@ -81,7 +81,7 @@ def with_ports(given: Specified, draft: Draft) -> Draft:
         return draft
     from symflex.model.ports import with_port_nodes  # few models have one
 
-    return with_port_nodes(given, draft)
+    return with_port_nodes(given.reader, given.sections["ports"], draft)
 
 
 def with_nodes(given: Specified, draft: Draft) -> Draft:

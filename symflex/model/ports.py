@@ -50,7 +50,6 @@ from symflex.model.spec import KeyValue, TableValue
 
 if TYPE_CHECKING:
     from symflex.model.network import Draft
-    from symflex.model.passes import Specified
 
 DELIVERED = {pair.delivered: domain for domain, pair in PORT_PAIRS.items()}
 FOLLOWED = tuple(name for name, kind in INPUT_KINDS.items() if kind.is_imposed and kind.domain in PORT_PAIRS)
@@ -84,13 +83,12 @@ def port_named(model: Model, name: str | None) -> ContactPort:
     return port
 
 
-def with_port_nodes(given: Specified, draft: Draft) -> Draft:
+def with_port_nodes(reader: Reader, section: TableValue | None, draft: Draft) -> Draft:
     """Return a draft in which each port of an input and an output is a node, whose source feeds the input."""
-    section = given.sections["ports"]
     for entry in section.entries if section else ():
         table = entry.value
         if isinstance(table, TableValue) and _is_pair(table):
-            draft = _with_node(given.reader, entry, table, draft)
+            draft = _with_node(reader, entry, table, draft)
     return draft
 
 

@@ -9,7 +9,7 @@ import pytest
 from symflex.cli import COMMANDS
 from symflex.cli.budgeting import Memory
 
-FREE_OF_WORK = {"new", "examples", "elements", "units", "schema"}
+FREE_OF_WORK = {"new", "examples", "elements", "units", "schema", "lsp"}
 ENDLESS = "while True: pass"
 SELF = """
 import sys, os, signal

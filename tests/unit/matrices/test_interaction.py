@@ -7,8 +7,7 @@ import pytest
 
 from symflex.errors import ModelError
 from symflex.expressions import format_expression
-from symflex.matrices.interaction import interaction
-from symflex.matrices.notations import interaction_json, interaction_text
+from symflex.matrices.interaction import interaction, interaction_json, interaction_text
 from symflex.matrices.transfer_matrix import derive_matrix
 from tests.unit.matrices.models import BEAM, TWO_MASSES, model_of
 
