@@ -23,6 +23,7 @@ from flint import arb, fmpz_mpoly
 from symflex.algebra import NO_KERNELS, Factored, Ring
 from symflex.analysis.sampled_loop.in_letters import BACK, Ends, Fixed, Timing, pulse_of, pulse_over
 from symflex.analysis.sampled_loop.pulse import pulse_function
+from symflex.analysis.time_response.delayed_terms import delayed_quotient
 from symflex.balls import ball, precision
 from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import (
@@ -177,6 +178,11 @@ def sampled_loop(model: Model, ranges: Mapping[str, Ends] | None = None) -> Samp
     (channel,) = loop.channels
     (tf,) = derive_all(observed(with_numbers(loop.model), channel.seen), [(channel.seen, channel.held)])
     bound = bind(tf.whole)
+    delays = None if bound.is_rational else delayed_quotient(bound)
+    if not bound.is_rational and (delays is None or len(delays.below) > 1):
+        message = "a sampled loop about beams, or about a delay in a continuous loop, is not available yet"
+        hint = "give the machine a few modes in place of beams, as 'symflex rational' prints them"
+        raise ModelError(Diagnostic("SF235", message, model.outputs[0].span, hint))
     if any(names_among(e, symbolic) for e in (loop.period, loop.delay)):
         pulse = pulse_over(bound, Timing(loop.period, loop.delay, numbers, symbolic))
     else:

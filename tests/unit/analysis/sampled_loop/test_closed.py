@@ -42,6 +42,14 @@ def test_what_is_sampled_is_said_in_words():
         ({"signals": 'y = "s*(C*(r - y))"'}, "SF236"),
         ({"signals": 'y = "C*(r - y)/s", x = "C*(y - x)/s"'}, "SF260"),
         ({"signals": 'y = "C*(r - y)/s"', "sampled": 'period = "0 s"'}, "SF260"),
+        (
+            {
+                "signals": 'y = "(C*(r - y) - exp(-0.3*s)*y)/s"',
+                "sampled": 'period = "T", blocks = ["C"]',
+                "parameters": "K = 1, T = 0.5",
+            },
+            "SF235",
+        ),
         ({"signals": 'y = "C*(r - y)/s"', "sampled": 'period = "T"', "parameters": "K = 1, T = {}"}, "SF229"),
     ],
 )
