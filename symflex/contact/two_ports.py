@@ -56,7 +56,7 @@ SCHEMA = "symflex.two_ports/1"
 BITS = 160
 SHOWN_DIGITS = 6  # of impedances
 WAVES = "a machine with waves or filters whose delay is no constant is proved by energy alone"
-NO_RECIPROCITY = "poles on the imaginary axis of a machine that is not reciprocal"
+NOT_ALONE = "poles on the imaginary axis of a machine that is not reciprocal, or has equal modes there"
 
 
 @dataclass(frozen=True)
@@ -173,7 +173,7 @@ def find_two_ports(model: Model, names: Sequence[str], digits: int = 12) -> TwoP
         return replace(asked, passive=True, absolutely_stable=True, proof=energy.reason, least=margin)
     if conditions is None:
         return replace(asked, reasons=(WAVES,))
-    faults, reasons = _faults(bounds, is_reciprocal=conditions.is_reciprocal)
+    faults, reasons = _faults(bounds, has_rank_one=conditions.is_reciprocal and conditions.has_rank_one)
     diagonal = [conditions.sign_of(f, digits) for f in conditions.diagonal]
     hermitian = [*diagonal, conditions.sign_of(conditions.determinant, digits)]
     llewellyn = [*diagonal, *(conditions.sign_of(f, digits) for f in conditions.llewellyn)]
@@ -245,12 +245,12 @@ def _bands(parts: Sequence[RealPart]) -> tuple[ActiveBand, ...]:
 
 
 def _faults(
-    bounds: Sequence[BoundTransferFunction], *, is_reciprocal: bool
+    bounds: Sequence[BoundTransferFunction], *, has_rank_one: bool
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Return what is wrong with poles, and what is not proved of them.
 
-    At a simple root of the determinant the residues are a matrix of rank one: of a reciprocal machine it is
-    positive semidefinite where its diagonal is.
+    Residues with ``has_rank_one`` are a real symmetric matrix of rank one, which is positive semidefinite
+    where its diagonal is.
     """
     faults, reasons = list[str](), list[str]()
     for i, bound in enumerate(bounds):
@@ -272,7 +272,7 @@ def _faults(
                 faults.append(f"{NEGATIVE_RESIDUE}: {at}")
             elif i in (0, 3) and (residue is None or not residue > 0):
                 reasons.append(f"the residue of the pole at {at}")
-            reasons += [] if is_reciprocal else [NO_RECIPROCITY]
+            reasons += [] if has_rank_one else [NOT_ALONE]
     return tuple(dict.fromkeys(faults)), tuple(dict.fromkeys(reasons))
 
 
@@ -326,6 +326,13 @@ class _Conditions:
         """Whether both transfer functions are the same."""
         return bool(self.entries[1] == self.entries[2])
 
+    @property
+    def has_rank_one(self) -> bool:
+        """Whether residues at simple poles have: the denominator divides the determinant of numerators."""
+        n = self.entries
+        _, remainder = divmod(n[0] * n[3] - n[1] * n[2], self.den)
+        return bool(remainder.is_zero())
+
     def image(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
         """Return the conjugate on the axis, times the highest power of each delay."""
         terms = {}
@@ -367,22 +374,27 @@ class _Conditions:
         """
         if self.is_reciprocal:
             return (self.determinant,)
-        u, times = self._over_den(self._products[0] - self._products[1])
-        return (u, times), (u**2 - self._across * self._power(2 * times - 2), 2 * times)
+        u, times, across = self._sides
+        return (u, times), (u**2 - across, 2 * times)
 
-    @property
-    def _across(self) -> fmpz_mpoly:
-        """``abs(2 N12 N21)^2``, with two of the highest powers of delays."""
+    @cached_property
+    def _sides(self) -> tuple[fmpz_mpoly, int, fmpz_mpoly]:
+        """``u`` times ``abs(D)^2``, its powers of delays, and ``abs(2 Y12 Y21)^2`` like its square.
+
+        What ``abs(D)^2`` does not divide has it twice, as where two modes of a machine are alike.
+        """
+        u, times = self._over_den(self._products[0] - self._products[1])
         one, other = self.entries[1], self.entries[2]
-        return 4 * one * other * self.image(one) * self.image(other)
+        across = 4 * one * other * self.image(one) * self.image(other)
+        return u, times, across if times == 1 else across * (self.den * self.image(self.den)) ** 2
 
     def least_eta(self, digits: int) -> LeastPart | None:
         """Return the least of eta, of a function without delays that is nowhere below 0; None else."""
-        if self.delays or self._across.is_zero():
+        u, _, across = self._sides
+        if self.delays or across.is_zero():
             return None
-        u, _ = self._over_den(self._products[0] - self._products[1])
         ring = self.bound.ratio.ring
-        squared = Factored.polynomial(ring, u**2) / Factored.polynomial(ring, self._across)
+        squared = Factored.polynomial(ring, u**2) / Factored.polynomial(ring, across)
         if self.sign_of((u, 0), digits).active:
             return None
         least = least_part(replace(self.bound, ratio=squared, parts=None), (), 2 * digits)

@@ -125,6 +125,31 @@ def test_random_machines_are_judged_as_a_dense_grid_judges_them(seed: int) -> No
         assert float(found.least.value.mid()) == pytest.approx(eta.min(), rel=1e-4)
 
 
+def test_equal_modes_keep_the_margin() -> None:
+    # Two equal resonators p = J s^2 + b s + k that levers join to both ports: Y = s/p times a matrix of
+    # numbers, so abs(D)^2 does not divide what eta compares.
+    lever = {"type": "planetary_gear", "rho": 1}
+    elements: dict[str, object] = {
+        "at_x": {**lever, "sun": "u", "ring": "v", "carrier": "x"},  # x = (u + v)/2
+        "at_y": {**lever, "rho": 3, "sun": "u", "ring": "v", "carrier": "y"},  # y = (u + 3 v)/4
+    }
+    for node in ("u", "v"):
+        elements |= {
+            f"J_{node}": {"type": "inertia", "at": node, "J": "J"},
+            f"b_{node}": {"type": "rotary_damper", "between": [node, "ground"], "b": "b"},
+            f"k_{node}": {"type": "torsion_spring", "between": [node, "ground"], "k": "k"},
+        }
+    parameters = {"J": 1, "b": 2, "k": 5}
+    model = Model(parameters=parameters, elements=elements, inputs={"M": {"torque": "x"}}, outputs={"Y": "y"})
+    found = of(model)
+    # Y = y [[1/2, 1/2], [1/2, 5/8]] with y = s/p.
+    omega = np.linspace(0.01, 30, 300_001)
+    y = 1j * omega / (5 - omega**2 + 2j * omega)
+    eta = (0.625 * y.real**2 - (y**2).real / 4) / (abs(y) ** 2 / 4)
+    assert found.passive is True and found.least is not None
+    assert abs(float(found.least.value.mid()) - eta.min()) < 1e-4
+
+
 def test_waves_that_a_controller_drives_are_not_decided() -> None:
     model = Model(
         parameters={"EA": 1, "rhoA": 1, "l": 1, "K": 1},
