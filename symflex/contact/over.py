@@ -42,6 +42,7 @@ from symflex.transfer.of_model import derive_all
 
 BITS = 256
 TRIED = 9  # values tried at first where no polynomial decides
+ASIDE = Fraction(1, 97)  # share of the range by which they are off equal parts
 SHARE = Fraction(1, 10_000)  # of the range, to which ends are halved then
 SLICES = 21  # values of the second parameter of a chart
 SPARE = 8  # digits of roots beyond those printed
@@ -333,7 +334,8 @@ def _tried(
     """Return intervals between values that were tried, and whether all were decided, some of them passive."""
     low, high = limits
     narrow = (high - low) * SHARE
-    shares = (Fraction(i, TRIED - 1) for i in range(TRIED))
+    # Off round numbers, at which bounds lie that people write: there no search decides.
+    shares = (Fraction(i, TRIED - 1) + ASIDE * (0 < i < TRIED - 1) for i in range(TRIED))
     known = {x: verdict(x) for x in (low + narrow + (high - low - 2 * narrow) * share for share in shares)}
     for a, b in pairwise(sorted(known)):
         while known[a] is not known[b] and b - a > narrow:
