@@ -39,6 +39,7 @@ WIDE_BITS = 128  # of balls, where sums of exponentials cancel
 BLURRED = 100  # radius of a ball on the rim over the largest value there, at most
 DIGITS = 30  # of poles and residues
 FURTHER = 8  # modes beyond those kept that are looked for, so that the disc reaches beyond these
+MOST_RADII = 6  # that are tried
 APART = 1.02  # least ratio of sizes of poles between which a rim passes
 ARCS, MOST_ARCS = 32, 2048  # of the upper half of the rim
 POINTS, TERMS = 96, 72  # values on the inner circle, and coefficients
@@ -147,16 +148,24 @@ def expanded(
     located = next(shared, None) or locate(bound, region, digits, with_zeros=False).complete()
     certificate = located.certificate
     reasons: tuple[str, ...] = () if certificate.certified else (f"poles: {certificate.reason}",)
-    radius = inf if is_rational else _radius(located)
-    inside = [pole for pole in located.all_poles if bool(pole.size() < radius)]
+    if any(not hidden.is_proved for hidden in located.hidden):
+        reasons += ("poles and zeros that agree in all digits cancel",)
+    radii = [inf] if is_rational else _radii(located)
+    inside = [pole for pole in located.all_poles if bool(pole.size() < radii[0])]
     parts = residues_at(bound, inside, digits)
     if any(part.is_estimate for part in parts):
         reasons += ("residues",)
     with precision(BITS):
-        function = Expanded(bound, delay, located, parts, radius, (), arb(0), reasons)
-        if radius == inf:
+        function = Expanded(bound, delay, located, parts, radii[0], (), arb(0), reasons)
+        if is_rational:
             return replace(function, regular=(_feedthrough(bound),))
-        return _with_series(function)
+        for radius in radii:
+            own = tuple(part for part in parts if bool(part.root.size() < radius))
+            found = _with_series(replace(function, parts=own, radius=radius))
+            if found is not None:
+                return found
+    message = f"{bound.name} is not bounded about its first {len(parts)} poles"
+    raise UncertifiedError(Diagnostic("SF405", message, None, "ask for fewer modes, or another number"))
 
 
 def _without_poles(name: str) -> PoleZeroMap:
@@ -169,8 +178,8 @@ def _has_poles_of(one: AnyBoundFunction, other: AnyBoundFunction) -> bool:
     return one.kernels == other.kernels and one.den / one.den.unit == other.den / other.den.unit
 
 
-def _radius(located: PoleZeroMap) -> float:
-    """Return a radius that no pole is near, within which all poles are known."""
+def _radii(located: PoleZeroMap) -> list[float]:
+    """Return some radii that no pole is near, the largest first, within which all poles are known."""
     sizes = sorted({float(pole.size().mid()) for pole in located.poles})
     edges = [abs(complex(e.re, e.im)) - e.radius for e in located.excluded]
     if not sizes and not edges:
@@ -179,10 +188,10 @@ def _radius(located: PoleZeroMap) -> float:
     limit = min([sizes[-1]] if sizes else [], default=inf)
     limit = min([limit, *edges])
     below = [size for size in sizes if size < limit]
-    for low, high in reversed([*pairwise([*below, limit])]):
-        if low and high > APART * low:
-            return float((low * high) ** 0.5)
-    return 0.5 * (below[0] if below and below[0] else limit)
+    pairs = reversed([*pairwise([*below, limit])])
+    between = [(low * high) ** 0.5 for low, high in pairs if low and high > APART * low]
+    lowest = next((size for size in below if size), limit)
+    return [*between[:MOST_RADII], 0.5 * lowest]
 
 
 def _feedthrough(bound: AnyBoundFunction) -> acb:
@@ -198,8 +207,8 @@ def _feedthrough(bound: AnyBoundFunction) -> acb:
     return acb(above.enclosure()[above.degree] / below.enclosure()[below.degree])
 
 
-def _with_series(function: Expanded) -> Expanded:
-    """Return a function with the series of what its principal parts leave."""
+def _with_series(function: Expanded) -> Expanded | None:
+    """Return a function with the series of what its principal parts leave; None if that is not bounded."""
     radius = arb(function.radius)
     terms = [(p.pole, k, c) for p in function.parts for k, c in enumerate(p.coefficients, 1)]
 
@@ -212,8 +221,7 @@ def _with_series(function: Expanded) -> Expanded:
 
     rim = _on_rim(lambda s: left(s, function.around), radius)
     if rim is None:
-        message = f"{function.bound.name} is not bounded about its first {len(function.parts)} poles"
-        raise UncertifiedError(Diagnostic("SF405", message, None, "ask for fewer modes, or another number"))
+        return None
     inner = radius * arb(INNER)
     step = acb(0, 1) * arb.pi() / POINTS  # points between the axes: none is a pole on one
     turns = [(step * (2 * k + 1)).exp() for k in range(POINTS)]
@@ -221,7 +229,7 @@ def _with_series(function: Expanded) -> Expanded:
     values = [left(inner * turn, function.at) for turn in turns[: POINTS // 2]]
     spend()
     if not all(v.is_finite() for v in values):
-        raise UncertifiedError(Diagnostic("SF405", f"{function.bound.name} has no values on a circle"))
+        return None
     aliased = rim * arb(INNER) ** POINTS / (1 - arb(INNER) ** POINTS)
     powers = [acb(1)] * len(values)
     coefficients, size, limit = [], arb(1), arb(1)
