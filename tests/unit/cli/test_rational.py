@@ -55,3 +55,58 @@ def test_text_fits_eighty_columns(shell):
             out = shell("rational", ROOT / "derivations" / f"{name}.toml", "--form", form).out
             assert max(map(len, out.splitlines())) <= 80, (name, form)
     assert shell("rational", "x.toml", "--form", "partial").code == 2
+
+
+SUM = """
+symflex = 1
+inputs = { u = {}, v = {} }
+outputs = { y = "u/(s + 1) + v/(s + 50)", z = "u/(s + 900)" }
+"""
+
+
+@pytest.fixture
+def several(shell):
+    (shell.folder / "sum.toml").write_text(SUM, encoding="utf-8")
+    return shell
+
+
+def test_state_equations_have_a_proved_error_and_the_documented_keys(several):
+    # Of y/u nothing is left out; of 1/(s + 900) its static value 1/900 is kept, off by that far out.
+    done = several("rational", "sum.toml", "--matrix", "--modes", "2", "--json")
+    assert done.code == 0 and done.json["error"]["least"] <= 1 / 900 <= done.json["error"]["most"] * 1.0001
+    page = (ROOT / "docs" / "command-line.md").read_text(encoding="utf-8")
+    section = page.partition("### `symflex.reduced/1`")[2].partition("\n#")[0]
+    assert all(f"`{key}`" in section for key in done.json.keys() - {"schema"})
+
+
+def test_a_specification_of_the_equations_is_written(several):
+    done = several("rational", "sum.toml", "--tf", "y/u", "--error", "0.1", "-o", "reduced.toml")
+    assert done.code == 0 and done.err == "wrote reduced.toml\n"
+    assert several("derive", "reduced.toml").code == 0
+
+
+def test_norms_of_a_matrix_are_printed(several):
+    # By hand: the largest singular value is at 0 Hz; squares of H2 norms are 1/2, 1/100 and 1/1800.
+    assert "largest singular value 1.000" in several("peak", "sum.toml", "--matrix").out
+    norm = several("peak", "sum.toml", "--matrix", "--h2", "--json").json
+    assert float(norm["h2"]["value"]) == pytest.approx((1 / 2 + 1 / 100 + 1 / 1800) ** 0.5)
+    page = (ROOT / "docs" / "command-line.md").read_text(encoding="utf-8")
+    section = page.partition("### `symflex.h2/1`")[2].partition("\n#")[0]
+    assert all(f"`{key}`" in section for key in norm.keys() - {"schema"})
+
+
+def test_options_that_do_not_go_together_are_refused(several):
+    for given in (
+        ("rational", "sum.toml", "--error", "0.1", "--modes", "2"),
+        ("rational", "sum.toml", "--error", "0.1", "--form", "modal"),
+        ("rational", "sum.toml", "--error", "-1"),
+        ("rational", "sum.toml", "--in", "u"),
+        ("rational", "sum.toml", "--matrix", "--tf", "y/u"),
+        ("rational", "sum.toml", "--matrix", "--in", "w"),
+        ("peak", "sum.toml", "--noise", "1/s"),
+        ("peak", "sum.toml", "--h2", "--band", "1", "2"),
+        ("peak", "sum.toml", "--h2", "--noise", "1/(s + w)"),
+        ("peak", "sum.toml", "--out", "y"),
+    ):
+        done = several(*given)
+        assert done.code in (2, 3) and "error[SF" in done.err, given
