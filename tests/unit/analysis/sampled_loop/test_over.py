@@ -38,6 +38,17 @@ def test_the_largest_stiffness_of_a_wall():
     assert found.certified and found.is_stable
 
 
+def test_a_wall_of_round_numbers():
+    # m = 0.2 kg, b = 0.5 N s/m, B = 0.2 N s/m, T = 1 ms: K below 1399.18544 N/m, by matrix exponentials
+    text = (
+        WALL.replace("0.3 kg", "0.2 kg").replace("0.7 N*s/m", "0.5 N*s/m").replace("0.3 N*s/m", "0.2 N*s/m")
+    )
+    found = loads(text).stability(over="K", limits=(0, 3000))
+    expected = edge(lambda K: ([K + 200.0, -200.0], [1.0, 0.0]), 900.0, 2000.0, ([1.0], [0.2, 0.5, 0.0]))
+    assert float(found.boundaries[0].gain) == pytest.approx(expected, rel=1e-10)
+    assert float(found.boundaries[0].gain) == pytest.approx(1399.18544, abs=5e-6)
+
+
 def test_a_delay_of_computing_costs_stiffness():
     text = WALL.replace('period = "T"', 'period = "T"\ndelay = "0.37 ms"')
     found = loads(text).stability(over="K", limits=(1, 3000))
