@@ -159,9 +159,9 @@ class OutputError:
             parameters = self.linear_terms(dynamics, r)
             if parameters > MOST_PARAMETERS * size:
                 return np.inf
-            # Samples before a delay are not used, as if each had a parameter of its own.
+            # Samples before a delay are not used; each would add about one to the squares.
             unused = sum(one.lead for one in self.outputs[r] if not one.is_at_rest)
-            total += size * np.log(max(cost, 1e-300) / size) + (parameters + unused) * price
+            total += size * np.log(max(cost, 1e-300) / size) + parameters * price + unused
         total += dynamics.omega.size * (2 * price + ANYWHERE) + dynamics.real.size * (price + ANYWHERE / 2)
         total += UNDAMPED * np.sum(dynamics.zeta < SHARP)
         total += dynamics.lines.size * 2 * np.log(n / CHANCE) + dynamics.is_delay_free * price

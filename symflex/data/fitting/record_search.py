@@ -45,6 +45,8 @@ AT_FIRST: Final = 30.0  # the same while noise of any colour counts as white
 PEAKS: Final = 8  # of what is left, at which terms are tried
 REGRESSORS: Final = 20  # of the regression that shows a delay
 DELAYS: Final = (0, 2, 5, 10, 18)  # samples, tried where it shows none
+BROAD: Final = (0.15, NO_PEAK)  # damping ratios from which pairs of poles may stand for a delay
+AROUND, MOST_DELAY = (-2.5, 0.0, 2.5), 60.0  # samples by which such a delay may be off; the longest
 NARROW: Final = 0.01  # share of an input's power on half of the lines, below which it has few frequencies
 LATE: Final = 5.0  # standard errors of its first coefficient that counts
 FILLED, MOST_LOST = 6, 400  # rounds in which lost samples are filled; more of them stay as they are guessed
@@ -343,18 +345,20 @@ class RecordSearch:
     def _with_delay(self, state: _State) -> Iterator[_State]:
         if not self.is_driven:
             return
-        dynamics, kind = state.dynamics, _kind(state.problem)
-        if dynamics.is_delay_free:
-            if not self.settings.is_delay_free:
-                plain = replace(dynamics, delay_s=0.0, is_delay_free=False)
-                yield replace(self._rebuilt(state, replace(kind, lead=0)), dynamics=plain)
-            return
-        late = []
-        for delay in sorted({0.3, 1.0, *(float(one) for one in self.delays if one)}):
-            moved = replace(dynamics, delay_s=delay * state.problem.step_s, is_delay_free=True)
-            rebuilt = replace(self._rebuilt(state, replace(kind, lead=int(delay) + 2)), dynamics=moved)
-            late.append(_State.of(rebuilt.problem, moved))
-        yield from sorted(late, key=lambda one: one.score)[:TRIED]
+        dynamics, kind, step = state.dynamics, _kind(state.problem), state.problem.step_s
+        moved: list[PoleSet] = []
+        if not dynamics.is_delay_free:
+            delays = sorted({0.3, 1.0, *(float(one) for one in self.delays if one)})
+            moved = [replace(dynamics, delay_s=delay * step, is_delay_free=True) for delay in delays]
+        elif not self.settings.is_delay_free:
+            plain = replace(dynamics, delay_s=0.0, is_delay_free=False)
+            yield replace(self._rebuilt(state, replace(kind, lead=0)), dynamics=plain)
+        for several in (moved, list(_as_delays(dynamics, step))):
+            late = []
+            for one in several:
+                rebuilt = self._rebuilt(state, replace(kind, lead=int(one.delay_s / step) + 2))
+                late.append(_State.of(rebuilt.problem, one))
+            yield from sorted(late, key=lambda one: one.score)[:TRIED]
 
     def _with_direct(self, state: _State) -> Iterator[_State]:
         if self.is_driven:
@@ -436,6 +440,26 @@ def _telling(record: SampledRecord) -> Mask:
 
 def _without_pair(dynamics: PoleSet, i: int) -> PoleSet:
     return replace(dynamics, omega=np.delete(dynamics.omega, i), zeta=np.delete(dynamics.zeta, i))
+
+
+def _as_delays(dynamics: PoleSet, step_s: float) -> Iterator[PoleSet]:
+    """Yield dynamics with a delay in place of broad poles, which may be those of a Pade approximant of one.
+
+    A pair whose zeros mirror it delays what is slow by ``4 zeta/omega``, and a real pole by ``2/omega``.
+    """
+    for least in BROAD:
+        is_broad = dynamics.zeta > least
+        if not (is_broad.any() or dynamics.real.size):
+            continue
+        longer = float(np.sum(4 * dynamics.zeta[is_broad] / dynamics.omega[is_broad]))
+        longer += float(np.sum(2 / dynamics.real))
+        kept = replace(
+            dynamics, omega=dynamics.omega[~is_broad], zeta=dynamics.zeta[~is_broad], real=np.zeros(0)
+        )
+        for off in AROUND:
+            delay = dynamics.delay_s + longer + off * step_s
+            if 0 < delay < MOST_DELAY * step_s:
+                yield replace(kept, delay_s=delay, is_delay_free=True)
 
 
 def _reduced(state: _State) -> Iterator[_State]:
