@@ -76,6 +76,8 @@ Lines = tuple[tuple[str, Expression], ...]
 def read_latex(text: Text, notation: PaperNotation) -> tuple[Expression, Lines]:
     r"""Return a formula, the last side of ``G = a = b``, and the definitions that follow it.
 
+    >>> from symflex.expressions import format_expression
+    >>> from symflex.papers.symbols import notation_of
     >>> text = Text.alone("paper", r"\frac{c}{s+p}, \text{ where } p = 2c")
     >>> formula, lines = read_latex(text, notation_of([]))
     >>> format_expression(formula), [(name, format_expression(line)) for name, line in lines]

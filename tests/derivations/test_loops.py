@@ -9,11 +9,12 @@ from symflex.loops.of_model import characteristic_loop
 from tests.house.repository import ROOT
 
 FOLDER = ROOT / "derivations" / "eppinger1988" / "loops"
-ROWS = [
+TABLES = [
     [cell.strip() for cell in line.strip("|").split("|")]
     for line in (FOLDER / "README.md").read_text("utf-8").splitlines()
     if line.startswith("| `")
 ]
+ROWS, CONTACTS = ([row for row in TABLES if len(row) == columns] for columns in (5, 3))
 NUMBER = re.compile(r"\d+\.\d+")
 
 
@@ -45,6 +46,16 @@ def check_row(row):
 def test_every_gain_and_frequency_of_the_table_of_lumped_models():
     lumped = [row for row in ROWS if "sliding_free_beam" not in row[0]]
     assert {check_row(row) for row in lumped} == {("polynomials", "polynomials")}
+
+
+def test_the_stiffnesses_of_a_contact_at_which_lumped_force_loops_lose_stability():
+    lumped = [row for row in CONTACTS if "sliding_free_beam" not in row[0]]
+    assert len(lumped) == len(ROWS) - 1
+    for name, stable, _ in lumped:
+        found = symflex.load(FOLDER / f"{name.strip('`')}_force.toml").stability("k_c", limits=(0, "inf"))
+        stated = [1e3 * float(x) for x in NUMBER.findall(stable)]
+        assert [float(b.gain) for b in found.boundaries] == pytest.approx(stated, rel=1e-4), name
+        assert found.certified, name
 
 
 @pytest.mark.slow

@@ -41,7 +41,7 @@ OF_DRAWING = re.compile(
     rf"|pgftext\[x={NUMBER}pt,y={NUMBER}pt,base(?:,left|,right)?(?:,rotate=90)?\]\{{\\fontsize\{{\d\}}\{{[0-9.]+\}}"
     rf"\\selectfont(?:\\color\[rgb\]\{{{NUMBER},{NUMBER},{NUMBER}\}})?\{{\}})"
 )
-OF_MATHEMATICS = {r"\mathrm", r"\zeta", r"\times", r"\circ", r"\pm", r"\cdot", r"\,", r"\!"}
+OF_MATHEMATICS = {r"\mathrm", r"\sigma", r"\zeta", r"\times", r"\circ", r"\pm", r"\cdot", r"\,", r"\!"}
 
 
 @pytest.fixture(scope="module")
