@@ -56,6 +56,7 @@ class Server {
             if (message.method === "textDocument/publishDiagnostics") this.onProblems(message.params);
             else if (message.method === "window/showMessage") vscode.window.showWarningMessage(message.params.message);
             else if (this.waiting.has(message.id)) {
+                if (message.error) vscode.window.showWarningMessage(message.error.message);
                 this.waiting.get(message.id)(message.result ?? null);
                 this.waiting.delete(message.id);
             }

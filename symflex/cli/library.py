@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import textwrap
 from collections.abc import Sequence
 from decimal import Decimal
@@ -393,5 +394,7 @@ def lsp() -> int:
     installed("pygls.lsp.server")
     from symflex.editor.server import language_server
 
-    language_server(version("symflex")).start_io()
+    # The server closes what it reads and writes; the program still flushes its own.
+    with os.fdopen(os.dup(0), "rb") as asked, os.fdopen(os.dup(1), "wb") as answered:
+        language_server(version("symflex")).start_io(asked, answered)
     return 0

@@ -74,6 +74,10 @@ def _completions(document: OpenDocument, before: str, offset: int) -> Iterator[C
             yield Completion("ground", "name", "what does not move")
         else:
             yield from (Completion(name, "function") for name in FUNCTIONS)
+            yield from (
+                Completion("s", "name", "the Laplace variable"),
+                Completion("pi", "name", "3.14159..."),
+            )
             yield from (Completion(n.name, "name") for n in defined if n.is_node)
 
 

@@ -14,6 +14,7 @@ from typing import Any, Final
 from urllib.parse import unquote, urlparse
 
 from lsprotocol import types
+from pygls.exceptions import JsonRpcException
 from pygls.lsp.server import LanguageServer
 
 from symflex.editor.completion import completions
@@ -51,9 +52,11 @@ def language_server(version: str) -> LanguageServer:
         (types.TEXT_DOCUMENT_FOLDING_RANGE, answers.folding),
         (types.TEXT_DOCUMENT_FORMATTING, answers.formatting),
     ):
-        server.feature(method)(_plain(answer))
+        server.feature(method)(
+            _plain(answer if method == types.TEXT_DOCUMENT_DID_CLOSE else answers.of_open(answer))
+        )
     triggers = types.CompletionOptions(trigger_characters=['"', "[", " "])
-    server.feature(types.TEXT_DOCUMENT_COMPLETION, triggers)(_plain(answers.completion))
+    server.feature(types.TEXT_DOCUMENT_COMPLETION, triggers)(_plain(answers.of_open(answers.completion)))
     return server
 
 
@@ -81,6 +84,15 @@ class _Answers:
     def __init__(self, server: LanguageServer) -> None:
         self.server = server
         self.documents: dict[str, OpenDocument] = {}
+
+    def of_open(self, answer: Callable[[Any], object]) -> Callable[[Any], object]:
+        """Return what answers questions about open documents, and nothing to those about others."""
+
+        def of_this(params: Any) -> object:  # noqa: ANN401 (each message has its own type)
+            is_open = params.text_document.uri in self.server.workspace.text_documents
+            return answer(params) if is_open else None
+
+        return of_this
 
     def _document(self, uri: str) -> OpenDocument:
         text = self.server.workspace.get_text_document(uri).source
@@ -186,10 +198,8 @@ class _Answers:
         try:
             text = renamed(document, name.name, params.new_name)
         except UsageError as error:
-            self.server.window_show_message(
-                types.ShowMessageParams(type=types.MessageType.Error, message=error.diagnostics[0].message)
-            )
-            return None
+            reason = error.diagnostics[0].message
+            raise JsonRpcException(reason, types.LSPErrorCodes.RequestFailed) from None
         return types.WorkspaceEdit(changes={uri: self._whole(uri, document, text)})
 
     def _whole(self, uri: str, document: OpenDocument, text: str) -> list[types.TextEdit]:

@@ -50,6 +50,8 @@ class Editor:
         self.send(id=self.number, method=method, params=params)
         while (message := self.receive()).get("id") != self.number:
             pass
+        if "error" in message:
+            raise KeyError(message["error"]["message"])
         return message["result"]
 
     def problems(self):
@@ -134,7 +136,8 @@ def test_an_editor_applies_fix_rename_and_layout_and_the_file_checks(editor):
     at = position(MODEL, MODEL.index("omega_0"))
     renamed = edited(MODEL, editor.about("rename", at, newName="w_n")["changes"][URI])
     assert renamed.count("w_n") == 2 and examined(renamed, "a.toml").problems == ()
-    assert editor.about("rename", at, newName="m") is None
+    with pytest.raises(KeyError, match="'m' is a name of this specification"):
+        editor.about("rename", at, newName="m")
     assert editor.ask("textDocument/formatting", textDocument={"uri": URI}, options=LAYOUT) == []
 
 
@@ -151,3 +154,13 @@ def test_an_editor_shows_formulas_definitions_and_completions(editor):
         "startLine": 2,
         "endLine": 4,
     }
+
+
+def test_a_file_that_is_not_open_has_no_answers_and_a_session_ends_well():
+    client = Editor()
+    with client.process:
+        assert client.about("hover", {"line": 0, "character": 0}) is None
+        assert client.ask("shutdown") is None
+        client.send(method="exit")
+        assert client.process.wait(PATIENCE) == 0
+        client.end.cancel()
