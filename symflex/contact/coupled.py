@@ -133,6 +133,7 @@ class CoupledStability(Printed):
         port, environment = self.environment.port, self.environment
         held = HELD.get(environment.text, "nothing moves")
         law = LAWS[port.domain] if environment.elements else held
+        law = f"{environment.lone}: {law}" if environment.lone else law
         law = "of a file" if _file_of(environment.text) else law
         head = f"port {port.name}, environment {environment.text} ({law})"
         if isinstance(self.answer, PoleZeroMap):

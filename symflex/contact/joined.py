@@ -30,7 +30,7 @@ def joined(machine: Model, port: ContactPort, other: Model, other_port: ContactP
         message = "an environment of a file cannot have [fields], or quantities at points of members"
         raise refused(message, "write its elements into the specification")
     taken = taken_names(machine)
-    new = {name: free_name(f"{name}_e", taken) for name in sorted(taken_names(other) - RESERVED.keys())}
+    new = {name: free_name(f"{name}_e", taken) for name in sorted(taken_names(other))}
     moved = _renamed(other, new)
     nodes = tuple(_reference(r, new) for r in other_port.nodes)
     joint = PlacedElement(
@@ -68,7 +68,7 @@ def _renamed(model: Model, new: Mapping[str, str]) -> Model:
     def moved(expression: Expression) -> Expression:
         mapping: dict[str, Expression] = {}
         for node in names(expression):
-            if isinstance(node, Name) and node.name in new:
+            if isinstance(node, Name) and node.name in new and node.name not in RESERVED:
                 mapping[node.name] = Name(new[node.name], span=node.span)
             elif isinstance(node, Attribute) and node.owner in new:
                 mapping[f"{node.owner}.{node.name}"] = Attribute(new[node.owner], node.name, span=node.span)

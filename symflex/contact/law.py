@@ -12,7 +12,7 @@ from the place, as those of all parameters do.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Final
@@ -75,6 +75,8 @@ CLASSES: Final[Mapping[str, Mapping[str, tuple[tuple[str, str], ...]]]] = {
     },
 }
 """Elements of each class with their parameter, by domain; one without any holds the port still."""
+ALIKE: Final[Mapping[str, str]] = {"passive": ANY, "everything": ANY, "dashpot": "damper", "rigid": "wall"}
+"""Other words for classes."""
 
 
 @dataclass(frozen=True)
@@ -90,6 +92,14 @@ class Environment:
     def is_wall(self) -> bool:
         """Whether it holds the port still."""
         return not self.elements
+
+    @property
+    def lone(self) -> str | None:
+        """The element that a law of one letter is, such as a spring; None of another law."""
+        if self.letters != (self.text,):
+            return None
+        ((kind, _, _),) = self.elements
+        return kind.replace("_", " ")
 
 
 def read_environment(model: Model, port: ContactPort, text: str) -> Environment:
@@ -109,6 +119,7 @@ def read_environment(model: Model, port: ContactPort, text: str) -> Environment:
         )
     if looks_like_quantity(text):
         return Environment(port, text, ((*parts[0], text),))
+    _check_no_class(model, text, classes)
     expression = parse(Text.alone(OPTION, text))
     letters = _letters(model, expression)
     powers = _by_powers(expression, model) if len(parts) > 1 else None
@@ -155,6 +166,20 @@ def with_environment(
 def share_name(letter: str) -> str:
     """Return the name of the parameter that stands for all positive values of a letter."""
     return f"{letter}_share"
+
+
+def _check_no_class(model: Model, text: str, classes: Iterable[str]) -> None:
+    """Refuse a law by which a class is meant, such as ``Any`` or ``spring_damper``."""
+    alike = {_bare(name): name for name in (*classes, ANY)}
+    alike |= {word: name for word, name in ALIKE.items() if name in alike.values()}
+    meant = alike.get(_bare(text))
+    known = {p.name for p in model.parameters} | {d.name for d in model.definitions}
+    if meant and text not in known:
+        raise refused(f"there is no environment '{text}'", f"did you mean '{meant}'?")
+
+
+def _bare(word: str) -> str:
+    return "".join(c for c in word.lower() if c.isalnum())
 
 
 def _letters(model: Model, expression: Expression) -> tuple[str, ...]:

@@ -81,3 +81,10 @@ def test_ports_that_move_differently_are_refused(tool):
     (tool / "tool.toml").write_text(turning.replace('"2 kg"', "2"), encoding="utf-8")
     with pytest.raises(UsageError, match="in translation, and 'end' in rotation"):
         loads(FORCE_LOOP).contact("touch", "tool.toml")
+
+
+@pytest.mark.parametrize("name", ["s", "pi", "ground"])
+def test_elements_of_the_other_may_have_names_that_mean_something_else(tool, name):
+    (tool / "tool.toml").write_text(TOOL.replace("mass   =", f"{name} ="), encoding="utf-8")
+    found = loads(FORCE_LOOP).contact("touch", "tool.toml", K=8)
+    assert (found.answer.verdict.right or 0) == unstable(8, (30e3, 2, 2))

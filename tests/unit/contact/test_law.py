@@ -4,7 +4,7 @@ import pytest
 
 from symflex import loads
 from symflex.contact.law import read_environment, share_name, with_environment
-from symflex.errors import SpecError
+from symflex.errors import SpecError, UsageError
 from symflex.model import load_with
 from symflex.model.ports import port_named
 
@@ -68,3 +68,33 @@ def test_a_letter_of_any_value_is_made_of_its_share() -> None:
 def test_a_mistake_is_shown_in_the_option() -> None:
     with pytest.raises(SpecError, match=r"--environment:1:5"):
         elements_of("k_w +")
+
+
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        ("Any", "any"),
+        ("any ", "any"),
+        ("passive", "any"),
+        ("Wall", "wall"),
+        ("dashpot", "damper"),
+        ("spring_damper", "spring-damper"),
+        ("SPRING DAMPER", "spring-damper"),
+    ],
+)
+def test_a_class_that_is_written_differently_is_no_letter(text: str, meant: str) -> None:
+    with pytest.raises(UsageError, match=f"did you mean '{meant}'"):
+        elements_of(text)
+
+
+def test_a_parameter_may_have_such_a_name() -> None:
+    model = loads(MACHINE.replace("k_e", "Wall")).resolved
+    assert read_environment(model, port_named(model, "tip.y"), "Wall").elements == (("spring", "k", "Wall"),)
+
+
+def test_a_lone_letter_is_said_to_be_a_spring() -> None:
+    model = loads(MACHINE).resolved
+    lone = [
+        read_environment(model, port_named(model, "tip.y"), x).lone for x in ("k_w", "k_e", "spring", "k_w*s")
+    ]
+    assert lone == ["spring", None, None, None]
