@@ -6,23 +6,25 @@ right half-plane.
 
 With an element of admittance y the whole has a pole where ``1 + Y y = 0``. At the end of an active band
 ``Y = j c``, and a spring or a mass (as c is negative or positive) puts a pole on the axis there; with a
-little more or less of it, the pole is on the right. A spring with a mass at its end, tuned to a frequency of
-the band, has ``y = r/(s - j omega) + ...`` there with r half the stiffness, and moves its own pole by
-``-r Y``, to the right if the mass is small enough (Colgate & Hogan 1988): so there is an example for every
-active machine.
+little more or less of it, the pole is on the right. A spring k with a mass m at its end has
+``1/y = s/k + 1/(m s)``. At a frequency of the band ``Y = R + jX``; with ``omega/k - 1/(m omega) = -X`` the
+pole is near ``j omega - R/(1/k + 1/(m omega^2))``, on the right if k is small enough (Colgate & Hogan 1988):
+so there is an example for every active machine. Of k some values are tried. Between two nodes that move, an
+inerter takes the place of the mass, and a capacitor does in circuits.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import log10
 from typing import TYPE_CHECKING, Literal
 
+from symflex.algebra import LAPLACE
 from symflex.contact.port import at_port, with_branch, with_hanging_mass
 from symflex.errors import SymflexError
-from symflex.expressions import number
+from symflex.expressions import Name, Power, number, product_of, quotient, sum_of
 from symflex.library.elements import ELEMENTS
 from symflex.model import ContactPort, Model
 from symflex.roots.locate import locate
@@ -62,8 +64,10 @@ LAWS: dict[str, dict[Kind, tuple[str, str, bool]]] = {
 }
 """By domain, elements with the admittances a/s, a s and a: type, parameter, and whether that is 1/a."""
 STEPS = (1.1, 0.9, 1.5, 0.6, 3.0, 0.2, 1.02, 0.98)  # shares of what puts a pole on the axis
-SHARES = (0.3, 0.1, 0.03, 0.01, 0.003)  # of the frequency, by which a hanging mass moves its pole
-INSIDE = (0.5, 0.2, 0.8)  # where in a band a hanging mass is tuned to
+SHARES = (0.3, 0.1, 0.03, 0.01, 0.003)  # of the machine's dynamic stiffness, of a spring with a mass
+INSIDE = (0.5, 0.2, 0.8, 0.05, 0.95)  # where in a band a hanging mass is tuned to
+LEAST = 1e-9  # real part of a pole that is proved, as a share of its size
+INERTERS = {"mass": "inerter", "inertia": "rotary inerter"}  # between two nodes
 SCALES = (1e-3, 1e-2, 1e-1, 1.0, 10.0, 1e2, 1e3)
 SECANTS = 40
 FAR = 1e12  # abs(s) at which secants are given up
@@ -79,6 +83,13 @@ class Put:
     parameter: str
     value: Fraction  # in SI units
     is_hanging: bool = False  # at the end of the element before it, not at the port
+    is_between: bool = False  # its other end is at the second node of the port
+
+    @property
+    def name(self) -> str:
+        """Its type in words."""
+        name = INERTERS.get(self.type_name, self.type_name) if self.is_between else self.type_name
+        return name.replace("_", " ")
 
     @property
     def unit(self) -> str:
@@ -88,9 +99,8 @@ class Put:
     @property
     def text(self) -> str:
         """The element in words."""
-        place = " at its end" if self.is_hanging else ""
-        name = self.type_name.replace("_", " ")
-        return f"{name} {self.parameter} = {float(self.value):.10g} {self.unit}{place}"
+        place = " in series" if self.is_between else " at its end" if self.is_hanging else ""
+        return f"{self.name} {self.parameter} = {float(self.value):.10g} {self.unit}{place}"
 
 
 @dataclass(frozen=True)
@@ -113,7 +123,12 @@ class Example:
         """Return it as JSON data."""
         shown = decimals(self.root.re, self.root.im, digits)
         elements = [
-            {"type": x.type_name, x.parameter: float(x.value), "unit": x.unit, "hanging": x.is_hanging}
+            {
+                "type": x.name.replace(" ", "_"),
+                x.parameter: float(x.value),
+                "unit": x.unit,
+                "hanging": x.is_hanging,
+            }
             for x in self.elements
         ]
         return {"elements": elements, "root": {"re": shown.re, "im": shown.im, "radius": shown.radius}}
@@ -136,6 +151,15 @@ def _rounded(value: float, is_up: bool | None) -> Fraction:
 
 def touched(model: Model, port: ContactPort, elements: Sequence[Put]) -> Model:
     """Return a model with elements at a port."""
+    if elements[-1:] and elements[-1].is_between:
+        spring, mass = elements
+        inertia = product_of([number(mass.value), Power(Name(LAPLACE), number(2))])
+        own = number(spring.value)
+        if _is_reciprocal(spring):
+            value = sum_of([own, quotient(number(1), inertia)])
+        else:
+            value = quotient(product_of([own, inertia]), sum_of([own, inertia]))
+        return with_branch(model, port, spring.type_name, {spring.parameter: value}, "touched")
     if len(elements) > 1 and elements[1].is_hanging:
         values = [(x.type_name, {x.parameter: number(x.value)}) for x in elements]
         return with_hanging_mass(model, port, *values)
@@ -180,31 +204,32 @@ def _candidates(
             else:
                 omega = low ** (1 - share) * high**share if low else share * high
             admittance = bound(1j * omega)
-            if not (is_single and admittance.real < 0):
+            if not admittance.real < 0:
                 continue
             for size in SHARES:
-                # y = r/(s - j omega) with r = k/2 moves its pole by -r Y.
-                k = 2 * size * omega / abs(admittance)
-                spring = put_at(port, "elastic", k)
-                mass = put_at(port, "inertial", _admittance(spring) / omega**2)
-                mass = Put(mass.kind, mass.type_name, mass.parameter, mass.value, is_hanging=True)
-                shift = -k / 2 * admittance
-                yield (spring, mass), 1j * omega + shift
+                spring = put_at(port, "elastic", size * omega / abs(admittance))
+                k = _admittance(spring)
+                m = 1 / (omega * (omega / k + admittance.imag))
+                mass = replace(put_at(port, "inertial", m), is_hanging=True, is_between=not is_single)
+                yield (spring, mass), 1j * omega - admittance.real / (1 / k + 1 / (m * omega**2))
     if not bands:
         scale = abs(bound(1j)) or 1.0
         for kind in ORDER:
+            if kind == "inertial" and not (is_single or port.domain == "electrical"):
+                continue
             for factor in SCALES:
                 yield (put_at(port, kind, factor / scale),), 1j
 
 
+def _is_reciprocal(put: Put) -> bool:
+    """Tell whether the value is 1/a of the admittance a/s, a s or a."""
+    laws = (law for laws in LAWS.values() for law in laws.values())
+    return any(law == (put.type_name, put.parameter, True) for law in laws)
+
+
 def _admittance(put: Put) -> float:
     """Return a of the admittance a/s, a s or a."""
-    is_reciprocal = any(
-        law[:2] == (put.type_name, put.parameter) and law[2]
-        for laws in LAWS.values()
-        for law in laws.values()
-    )
-    return float(1 / put.value if is_reciprocal else put.value)
+    return float(1 / put.value if _is_reciprocal(put) else put.value)
 
 
 def _checked(
@@ -214,7 +239,7 @@ def _checked(
     region = None
     if not bound.is_rational:
         near = _root_near(bound, elements, guess)
-        if near is None or near.real <= 1e-6 * abs(near):
+        if near is None or near.real <= LEAST * abs(near):
             return None
         reach = near.real / 2
         ends = (near.real - reach, near.real + reach, near.imag - reach, near.imag + reach)

@@ -52,6 +52,7 @@ NOT_WRITTEN = "the driving-point function of so large a network is not written o
 UNSTABLE = "the machine alone is not stable"
 DOUBLE = "a pole on the imaginary axis is not simple"
 NEGATIVE_RESIDUE = "a pole on the imaginary axis has a residue that is not positive"
+NO_EXAMPLE = "what it is unstable with: no simple example was found"
 IMPROPER = "the function grows faster than s, or with a negative factor, as s grows"
 
 
@@ -126,6 +127,8 @@ class PortPassivity(Printed):
             )
         if self.example is not None:
             passages.append(Passage(["what it is unstable with", *(f"  {x}" for x in self.example.lines())]))
+        elif self.repair is not None:
+            passages.append(Passage([NO_EXAMPLE]))
         return passages
 
 

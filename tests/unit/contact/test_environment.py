@@ -53,3 +53,34 @@ def test_what_is_active_at_all_frequencies_is_unstable_with_a_hanging_mass_or_al
         "[inputs]", 'k = { type = "spring", between = ["x", "ground"], k = "1 N/m" }\n[inputs]'
     )
     assert find_passivity(machine(text), "tip").example.elements == ()
+
+
+NOT_COLLOCATED = """symflex = 1
+[parameters]
+kp = "900 N/m"
+[elements]
+a = { type = "mass", at = "x1", m = "2 kg" }
+b = { type = "mass", at = "x2", m = "0.5 kg" }
+spring = { type = "spring", between = ["x1", "x2"], k = "4000 N/m" }
+damper = { type = "damper", between = ["x1", "x2"], b = "3 N*s/m" }
+rail = { type = "damper", between = ["x1", "ground"], b = "10 N*s/m" }
+motor = { type = "force_source", at = "x1", f = "-kp*x2/(1 + s/200)" }
+[inputs]
+F = { force = "x2" }
+[outputs]
+X = "x2"
+[ports]
+rel = { at = ["x1", "x2"] }
+"""
+
+
+def test_between_two_nodes_a_spring_with_an_inerter_is_found_with_a_root_of_both():
+    example = find_passivity(machine(NOT_COLLOCATED), "rel").example
+    spring, inerter = example.elements
+    s, k, m = complex(example.root), float(spring.value), float(inerter.value)
+    inner = 4000 + 3 * s
+    equations = [[2 * s**2 + 10 * s + inner, 900 / (1 + s / 200) - inner], [-inner, 0.5 * s**2 + inner]]
+    x1, x2 = np.linalg.solve(np.array(equations), [1, -1])
+    assert s.real > 0
+    assert s * (x1 - x2) == pytest.approx(-(s / k + 1 / (m * s)), rel=1e-6)
+    assert "inerter" in example.lines()[0]
