@@ -39,6 +39,9 @@ def passivity(spec: Specification, given: PassivityOptions) -> int:
     """
     from symflex.contact.passivity import driving_function, find_passivity
 
+    if given.letters and (given.over or len(given.ports) > 1):
+        other = "--over" if given.over else "two ports"
+        raise refused(f"--letters is not available with {other}", "ask for each alone")
     if len(given.ports) > 1 and not given.over:
         return _two_ports(spec, given)
     port = next(iter(given.ports), None)

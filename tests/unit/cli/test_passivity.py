@@ -36,3 +36,9 @@ def test_the_figure_is_drawn_by_plot(wall):
 def test_an_unknown_port_is_refused_with_the_nearest(wall, capsys):
     assert run(["passivity", "wall.toml", "--port", "xx"]) == 2
     assert "there is no node 'xx'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("other", [["--over", "K"], ["--port", "tip", "--port", "x"]])
+def test_letters_go_with_one_port_and_no_over(wall, capsys, other):
+    assert run(["passivity", "wall.toml", "--letters", *other]) == 2
+    assert "SF902" in capsys.readouterr().err
