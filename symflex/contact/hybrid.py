@@ -7,19 +7,24 @@ passive at the mass exactly if, for all frequencies up to half of the sampling f
 
     b > T/2 Re{(1 - exp(-j omega T)) H(exp(j omega T))}/(1 - cos omega T)
 
-(Colgate and Schenkel 1997). The right side is a quotient of polynomials in ``c = cos omega T``; where it is
-a straight line in c, its ends say all, and for ``H = K + B (z - 1)/(T z)`` that is ``b > K T/2 + |B|``.
+and the machine alone is stable (Colgate and Schenkel 1997). At the bound itself it is passive, too, if it is
+stable: while it moves by d between two samples, the damper takes ``b d^2/T`` at least. The right side is a
+quotient of polynomials in ``c = cos omega T``; where it is a straight line in c, its ends say all, and for
+``H = K + B (z - 1)/(T z)`` that is ``b > K T/2 + |B|``.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 
 from flint import arb, fmpq, fmpq_poly, fmpz_mpoly
 
 from symflex.algebra import LAPLACE, Factored, Ring, by_powers, degree_in
+from symflex.analysis.sampled_loop import SampledPoles, sampled_poles
 from symflex.balls import ball, precision
+from symflex.contact.passivity import UNSTABLE
 from symflex.contact.port import at_port
 from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import (
@@ -46,6 +51,7 @@ from symflex.transfer.lowest_terms import cancel
 from symflex.transfer.of_model import derive_all
 
 DIGITS = 30  # of places where the right side is largest
+BITS = 192  # of what is needed there
 SHOWN_DIGITS = 12
 INFINITE = "the controller has a pole at z = 1: no damper is large enough"
 CONTROLLER, PERIOD, UNIT = "controller", "period", "unit input"
@@ -58,29 +64,56 @@ class HybridPassivity(Printed):
 
     port: str
     damping: Fraction  # of the machine
-    needed: arb | None  # damping above which it is passive; None where none is enough
+    needed: arb | None  # damping from which on it is passive, if stable alone; None where none is enough
     omega: arb | None  # where that much is needed [rad/s]
     condition: str  # in letters; empty where its ends do not say all
+    excess: int | None  # the sign of what the damping is beyond what is needed; None where it is not known
+    alone: SampledPoles  # the poles of the machine alone
 
     @property
     def passive(self) -> bool | None:
-        """Whether it is; None where the damping is what is needed, to all digits."""
-        if self.needed is None:
+        """Whether it is; None where that is not proved."""
+        if self.excess == -1 or self.alone.verdict.word == "unstable":
             return False
-        with precision(max(64, self.needed.bits())):
-            value = ball(self.damping)
-            return True if value > self.needed else False if value < self.needed else None
+        return None if self.reasons else True
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """What is wrong with the machine alone, with a pole outside of the unit circle."""
+        if self.alone.verdict.word != "unstable":
+            return ()
+        outside = [p for p in (*self.alone.poles, *self.alone.hidden) if p.side > 0]
+        return (f"{UNSTABLE}: {self.alone.sentence}", *(f"pole at {p.words}" for p in outside[-1:]))
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """What is not proved."""
+        reasons = []
+        if self.alone.verdict.right is None:
+            reasons.append(f"the poles of the machine alone: {self.alone.verdict.reason}")
+        if self.excess is None:
+            reasons.append(f"the damping is what is needed, to {DIGITS} digits: which one is larger is open")
+        elif not self.excess and self.alone.verdict.word != "stable":
+            reasons.append(
+                "the damping is exactly what is needed, and the machine alone is not proved stable"
+            )
+        return tuple(reasons)
 
     def passages(self) -> list[Passage]:
         """Return the verdict and the condition."""
         word = {True: "PASSIVE, proved", False: "ACTIVE, proved", None: "NOT DECIDED"}[self.passive]
         lines = [f"port {self.port}, with a sampled controller   {word}"]
-        lines += [f"  passive exactly for {self.condition}"] if self.condition else []
+        lines += [f"  {fault}" for fault in self.faults]
+        if self.passive is None:
+            lines += [f"  not proved: {reason}" for reason in self.reasons]
+        if self.condition:
+            lines.append(f"  if stable alone, passive exactly for {self.condition}, and at that bound")
         if self.needed is None:
             return [Passage([*lines, f"  {INFINITE}"])]
         place = "" if self.omega is None else f", at {short_hertz(self.omega)} Hz"
         lines.append(f"  damping {float(self.damping):.12g}")
-        lines.append(f"  needed: more than {figure(self.needed, SHOWN_DIGITS, trimmed=True)}{place}")
+        alone = " of a machine that is stable alone" if self.faults else ""
+        lines.append(f"  needed{alone}: at least {figure(self.needed, SHOWN_DIGITS, trimmed=True)}{place}")
         return [Passage(lines)]
 
     def to_json_dict(self) -> dict[str, object]:
@@ -94,6 +127,8 @@ class HybridPassivity(Printed):
             "needed_damping": None if self.needed is None else real_json(self.needed, SHOWN_DIGITS),
             "frequency_hz": None if self.omega is None else float(hertz(self.omega).mid()),
             "condition": self.condition,
+            "faults": list(self.faults),
+            "reasons": [] if self.passive is False else list(self.reasons),
         }
 
 
@@ -107,11 +142,12 @@ def find_hybrid(model: Model, port: str | None) -> HybridPassivity:
         raise _other("several places take samples")
     driven, pair = at_port(loop.model, chosen)
     exact = _DampingNeeded.of(driven, loop, pair, has_letters=False)
-    needed, cosine, period = exact.largest
+    needed, cosine = exact.largest
     with precision(128):
-        omega = None if cosine is None else cosine.acos() / ball(period)
+        omega = None if cosine is None else cosine.acos() / ball(exact.rational(exact.period))
     condition = _DampingNeeded.of(driven, loop, pair, has_letters=True).in_letters
-    return HybridPassivity(chosen.name, exact.rational(exact.damping), needed, omega, condition)
+    damping, alone = exact.rational(exact.damping), sampled_poles(model)
+    return HybridPassivity(chosen.name, damping, needed, omega, condition, exact.excess, alone)
 
 
 def _other(reason: str) -> ModelError:
@@ -174,26 +210,47 @@ class _DampingNeeded:
             raise _other("its numbers are not rational")
         return Fraction(0) if value.is_zero else Fraction(value.unit)
 
-    @property
-    def largest(self) -> tuple[arb | None, arb | None, Fraction]:
-        """The most damping that is needed, the cosine at which it is, and the period."""
+    @cached_property
+    def _everywhere(self) -> list[tuple[fmpq | arb, arb]] | None:
+        """What is needed at both ends of the cosine, exactly, and where it is stationary; None if endless."""
         ring = self.needed.ring
         above, below = (_rationals(ring, f) for f in _split(self.needed))
         above = above * fmpq(self.needed.unit.numerator, self.needed.unit.denominator)
-        one, least = fmpq(1), fmpq(-1)
-        period = self.rational(self.period)
-        places = [arb(1), arb(-1), *_inside(above.derivative() * below - above * below.derivative())]
-        if below(one) == 0 and above(one) != 0:
+        ends = [fmpq(1), fmpq(-1)]
+        if below(ends[0]) == 0 and above(ends[0]) != 0:
             # What is left next to z = 1 has the sign of the numerator there, over a positive denominator.
-            if above(one) * below(fmpq(99, 100)) > 0:
-                return None, None, period
-            places = places[1:]
-        if _inside(below) or below(least) == 0:
+            if above(ends[0]) * below(fmpq(99, 100)) > 0:
+                return None
+            ends = ends[1:]
+        if _inside(below) or below(fmpq(-1)) == 0:
             raise _other("its controller has a pole on the unit circle")
-        with precision(192):
-            values = [(_at(above, c) / _at(below, c), c) for c in places]
-            most = max(values, key=lambda pair: float(pair[0].mid()))
-        return most[0], most[1], period
+        between = _inside(above.derivative() * below - above * below.derivative())
+        with precision(BITS):
+            exact: list[tuple[fmpq | arb, arb]] = [(above(c) / below(c), arb(c)) for c in ends]
+            return exact + [(_at(above, c) / _at(below, c), c) for c in between]
+
+    @property
+    def largest(self) -> tuple[arb | None, arb | None]:
+        """The most damping that is needed, and the cosine at which it is."""
+        if self._everywhere is None:
+            return None, None
+        with precision(BITS):
+            values = [(arb(value), c) for value, c in self._everywhere]
+            return max(values, key=lambda pair: float(pair[0].mid()))
+
+    @property
+    def excess(self) -> int | None:
+        """The sign of what the damping is beyond what is needed anywhere; None where it is not known."""
+        damping = self.rational(self.damping)
+        if self._everywhere is None:
+            return -1
+        with precision(BITS):
+            signs = [
+                _sign(fmpq(damping.numerator, damping.denominator) - value) for value, _ in self._everywhere
+            ]
+        if -1 in signs:
+            return -1
+        return None if None in signs else min(sign for sign in signs if sign is not None)
 
     @property
     def in_letters(self) -> str:
@@ -212,6 +269,11 @@ class _DampingNeeded:
         damping = _letters(self.damping)
         left = "0" if damping is None else format_expression(damping)
         return f"{left} > {format_expression(sum_of(most)) if most else 0}"
+
+
+def _sign(value: fmpq | arb) -> int | None:
+    is_known = not isinstance(value, arb) or value == 0 or not value.contains(0)
+    return (value > 0) - (value < 0) if is_known else None
 
 
 def _size(value: Expression) -> Expression:

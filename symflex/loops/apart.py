@@ -18,6 +18,7 @@ from symflex.loops.loop import GainPolynomial
 from symflex.roots.locate import energy_of, locate, not_searched
 from symflex.roots.pole_zero_map import StabilityVerdict, count_right, judge
 from symflex.roots.region import Modes
+from symflex.roots.root import Root
 from symflex.transfer import BoundTransferFunction
 from symflex.transfer.transfer_function import HiddenFactor
 
@@ -31,6 +32,7 @@ class PolesApart:
     verdict: StabilityVerdict = NONE
     right: int = 0  # in the right half-plane, hidden ones among them
     axis: int = 0  # on the axis, controllable and observable
+    hidden: tuple[Root, ...] = ()  # those that are neither controllable nor observable
 
 
 def poles_apart(bound: BoundTransferFunction, factors: Sequence[GainPolynomial]) -> PolesApart:
@@ -69,4 +71,5 @@ def poles_apart(bound: BoundTransferFunction, factors: Sequence[GainPolynomial])
     is_finite = ring.used_in(f for f, _ in den.factors).isdisjoint(bound.kernels.generators)
     if verdict.word == "unknown" and is_finite and (energy := energy_of(bound)).is_passive:
         verdict = judge(located.poles, "", energy.reason, unseen, (True, False))
-    return PolesApart(verdict, count_right(every), sum(r.multiplicity for r in on_axis))
+    right, axis = count_right(every), sum(r.multiplicity for r in on_axis)
+    return PolesApart(verdict, right, axis, tuple(unseen))

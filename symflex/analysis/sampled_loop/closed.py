@@ -38,7 +38,7 @@ from symflex.expressions import (
     substitute,
 )
 from symflex.library.blocks import BLOCKS
-from symflex.loops.apart import NONE, poles_apart
+from symflex.loops.apart import NONE, PolesApart, poles_apart
 from symflex.loops.boxes import BITS, Box, CharacteristicFunction, Piece
 from symflex.loops.loop import GainPolynomial
 from symflex.model import ExactValue, Input, Model, ModelParameter, Output, PlacedBlock, with_numbers
@@ -49,6 +49,7 @@ from symflex.roots import PoleZeroMap
 from symflex.roots.locate import locate
 from symflex.roots.passivity import observed
 from symflex.roots.pole_zero_map import StabilityVerdict
+from symflex.roots.root import Root
 from symflex.state_space.sampled import Sampling
 from symflex.transfer import BoundTransferFunction, TransferFunction, bind
 from symflex.transfer.enclose import enclose, rational_value
@@ -80,14 +81,26 @@ class SampledLoop:
     def apart(self) -> StabilityVerdict:
         """What modes of the continuous part say of the loop that no controller sees or moves."""
         verdict = NONE
+        for each in self._hidden_modes:
+            verdict = verdict.beside(each.verdict)
+        return verdict
+
+    @property
+    def unseen(self) -> tuple[Root, ...]:
+        """The poles of these modes in s."""
+        return tuple(root for each in self._hidden_modes for root in each.hidden)
+
+    @cached_property
+    def _hidden_modes(self) -> tuple[PolesApart, ...]:
+        found = []
         for bound in self.hidden:
             ring = bound.ratio.ring
             unseen = [
                 GainPolynomial((Factored.polynomial(ring, h.polynomial),), h.multiplicity, is_hidden=True)
                 for h in bound.hidden
             ]
-            verdict = verdict.beside(poles_apart(bound, unseen).verdict)
-        return verdict
+            found.append(poles_apart(bound, unseen))
+        return tuple(found)
 
 
 def _between(ends: Ends) -> arb:

@@ -10,7 +10,7 @@ imaginary axis; its roots are enclosed, on the axis exactly where they are there
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -42,6 +42,24 @@ class SampledPole:
     is_pair: bool
     side: int  # 1 outside of the unit circle, 0 on it, -1 inside
 
+    @property
+    def words(self) -> str:
+        """The pole in z and in s, on one line."""
+        s = "" if self.s is None else f", s = {_short(self.s, self.is_pair)} rad/s"
+        return f"z = {_short(self.z, self.is_pair)}{s}"
+
+    def to_json_dict(self) -> dict[str, object]:
+        """Return the pole as a part of ``symflex.sampled_poles/1``."""
+        return {
+            "z": [float(self.z.real.mid()), float(self.z.imag.mid())],
+            "radius": float(abs(acb(self.z.real.rad(), self.z.imag.rad())).upper()),
+            "abs": float(self.size.mid()),
+            "s": None if self.s is None else [float(self.s.real.mid()), float(self.s.imag.mid())],
+            "multiplicity": self.multiplicity,
+            "pair": self.is_pair,
+            "where": ("inside", "on the circle", "outside")[self.side + 1],
+        }
+
 
 @dataclass(frozen=True)
 class SampledPoles(Printed):
@@ -52,6 +70,7 @@ class SampledPoles(Printed):
     poles: tuple[SampledPole, ...]  # ascending in abs(z)
     verdict: StabilityVerdict
     digits: int
+    hidden: tuple[SampledPole, ...] = ()  # of the continuous part, that the controller does not see or move
 
     def __repr__(self) -> str:
         return f"<SampledPoles: {self.count} poles, {self.sentence}>"
@@ -76,9 +95,17 @@ class SampledPoles(Printed):
         status = "certified" if self.certified else "NOT CERTIFIED"
         lines = [f"sampled loop   {status}: {self.count} poles in z", f"{INDENT}{self.sampled}"]
         yield Passage([*lines, f"{INDENT}{self.sentence}"])
-        head = ("Re z", "Im z", "radius", "abs(z)", "Re s [rad/s]", "Im s [rad/s]", "frequency [Hz]")
-        rows = [head]
-        for pole in self.poles:
+        yield Passage([f"{INDENT}poles, s = ln(z)/T"], self._rows(self.poles))
+        if self.hidden:
+            line = f"{INDENT}hidden poles of the continuous part, which the controller does not see or move"
+            yield Passage([line], self._rows(self.hidden))
+
+    def _rows(self, poles: Iterable[SampledPole]) -> list[tuple[str, ...]]:
+        """Return the table of poles."""
+        rows: list[tuple[str, ...]] = [
+            ("Re z", "Im z", "radius", "abs(z)", "Re s [rad/s]", "Im s [rad/s]", "frequency [Hz]")
+        ]
+        for pole in poles:
             shown = decimals(pole.z.real, pole.z.imag, self.digits)
             both = "+-" if pole.is_pair else ""
             s = ("-", "-", "-")
@@ -92,7 +119,7 @@ class SampledPoles(Printed):
                 )
             times = f" ({pole.multiplicity} times)" if pole.multiplicity > 1 else ""
             rows.append((shown.re + times, both + shown.im, shown.radius, figure(pole.size, self.digits), *s))
-        yield Passage([f"{INDENT}poles, s = ln(z)/T"], rows)
+        return rows
 
     def to_json_dict(self) -> dict[str, object]:
         """Return the poles in the schema ``symflex.sampled_poles/1``."""
@@ -105,18 +132,8 @@ class SampledPoles(Printed):
             "verdict": self.sentence,
             "stable": None if self.verdict.word == "unknown" else self.verdict.word == "stable",
             "outside": self.verdict.right,
-            "poles": [
-                {
-                    "z": [float(pole.z.real.mid()), float(pole.z.imag.mid())],
-                    "radius": float(abs(acb(pole.z.real.rad(), pole.z.imag.rad())).upper()),
-                    "abs": float(pole.size.mid()),
-                    "s": None if pole.s is None else [float(pole.s.real.mid()), float(pole.s.imag.mid())],
-                    "multiplicity": pole.multiplicity,
-                    "pair": pole.is_pair,
-                    "where": ("inside", "on the circle", "outside")[pole.side + 1],
-                }
-                for pole in self.poles
-            ],
+            "poles": [pole.to_json_dict() for pole in self.poles],
+            "hidden": [pole.to_json_dict() for pole in self.hidden],
         }
 
 
@@ -151,9 +168,26 @@ def sampled_poles(
     located = located_in_w(loop.tf, {}, digits + GUARD_DIGITS)
     poles = [_pole(root, loop) for root in located.all_poles if not root.im < 0]
     verdict = located.verdict.beside(loop.apart)
-    return SampledPoles(
-        described(loop), loop.period, tuple(sorted(poles, key=lambda p: float(p.size.mid()))), verdict, digits
-    )
+    hidden = [_in_z_of(root, loop) for root in loop.unseen if not root.im < 0]
+    return SampledPoles(described(loop), loop.period, _sorted(poles), verdict, digits, _sorted(hidden))
+
+
+def _sorted(poles: Iterable[SampledPole]) -> tuple[SampledPole, ...]:
+    return tuple(sorted(poles, key=lambda p: float(p.size.mid())))
+
+
+def _in_z_of(root: Root, loop: SampledLoop) -> SampledPole:
+    """Return a pole of the continuous part at samples."""
+    with precision(2 * root.working_bits() + 64):
+        s = root.enclosure()
+        z = (s * ball(loop.period)).exp()
+        side = 0 if root.on_imaginary_axis else 1 if root.re > 0 else -1
+        return SampledPole(z, abs(z) if side else arb(1), s, root.multiplicity, not root.is_real, side)
+
+
+def _short(value: acb, is_pair: bool) -> str:
+    real, imag = (float(part.mid()) for part in (value.real, value.imag))
+    return f"{real:.9g} +- {abs(imag):.9g}j" if is_pair else f"{real:.9g}"
 
 
 def _pole(root: Root, loop: SampledLoop) -> SampledPole:

@@ -50,7 +50,7 @@ def test_the_condition_of_a_wall_comes_out_in_letters():
 def test_the_verdict_changes_at_the_condition():
     assert found().passive is False  # 0.7 < 0.5 + 0.3
     assert found(wall="K/2 + B*(z - 1)/(T*z)").passive is True  # 0.7 > 0.25 + 0.3
-    assert found(wall="0.8*K + B*(z - 1)/(T*z)").passive is None  # 0.7 = 0.4 + 0.3
+    assert found(wall="0.8*K + B*(z - 1)/(T*z)").passive is True  # 0.7 = 0.4 + 0.3: nothing comes out
 
 
 def test_a_sample_of_delay_needs_more_damping():
@@ -64,6 +64,27 @@ def test_a_filtered_controller_agrees_with_a_grid():
     filtered = found(wall="K*(z - 0.3)/(z^2 - 0.5*z + 0.2)")
     expected = needed(lambda z: 1000 * (z - 0.3) / (z**2 - 0.5 * z + 0.2))
     assert float(filtered.needed) == pytest.approx(expected, rel=1e-7)
+
+
+@pytest.mark.parametrize("wall", ["-K", "K/(z - 2)", "-K/(z - 1)", "K*(z - 1.2)/(z + 1.5)"])
+def test_a_machine_that_is_unstable_alone_is_active(wall):
+    unstable = found(wall=wall)
+    assert unstable.passive is False
+    assert "the machine alone is not stable" in unstable.faults[0]
+
+
+def test_a_hidden_mode_that_grows_is_named():
+    more = """n = { type = "mass", at = "y", m = "1 kg" }
+g = { type = "spring", between = ["y", "ground"], k = "-5 N/m" }"""
+    unstable = found(wall="K/2", more=more)
+    assert unstable.passive is False
+    assert "s = 2.23606798 rad/s" in unstable.faults[1]  # sqrt(5)
+    assert [p.side for p in unstable.alone.hidden] == [-1, 1]
+
+
+def test_a_negative_delay_is_refused():
+    with pytest.raises(ModelError, match="SF260"):
+        found(delay="-T")
 
 
 def test_no_damper_is_enough_for_an_integrator():
