@@ -15,6 +15,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import inf
 
+import numpy as np
+import numpy.typing as npt
 from flint import acb, acb_mat, arb
 
 from symflex.analysis.norms.axis import MatrixOnAxis, TaylorForm, norm
@@ -65,16 +67,26 @@ def eigenvalue_bound(matrix: acb_mat) -> arb:
     return (trace.upper().max(arb(0)).root(2**SQUARINGS) + norm(matrix - middle)).upper()
 
 
+def matrix_of_doubles(matrix: acb_mat) -> npt.NDArray[np.complex128] | None:
+    """Return a matrix over the size of its largest entry in doubles; None where it is zero or not finite."""
+    middles = [x.mid() for x in matrix.entries()]
+    scale = max((x.abs_upper() for x in middles), default=arb(0))
+    if not (scale.is_finite() and scale > 0):
+        return None
+    values = np.array([complex(x / scale) for x in middles])
+    return values.reshape(matrix.nrows(), matrix.ncols())
+
+
 def eigenvalue_met(matrix: acb_mat) -> arb:
     """Return a Rayleigh quotient of a Hermitian matrix, about the largest eigenvalue and no more."""
     if matrix.nrows() == 1:
         return matrix[0, 0].real.lower()
-    power = matrix
-    for _ in range(SQUARINGS):
-        power = power * power
-    n = power.nrows()
-    column = max(range(n), key=lambda j: float(abs(power[j, j]).mid()))
-    vector = acb_mat(n, 1, [power[i, column].mid() for i in range(n)])
+    middle = matrix_of_doubles(matrix)
+    if middle is None:
+        return arb(0)
+    _, vectors = np.linalg.eigh(middle)
+    n = matrix.nrows()
+    vector = acb_mat(n, 1, [acb(complex(x)) for x in vectors[:, -1]])
     size = sum((abs(x) ** 2 for x in vector.entries()), arb(0))
     if not size > 0:
         return arb(0)

@@ -20,13 +20,13 @@ from symflex.analysis.norms.largest import largest_gain
 from symflex.balls import ball, precision
 from symflex.loops.peak import Peak
 from symflex.options import Ends, band_ends
-from symflex.roots import Band, Position
+from symflex.roots import Band, Position, figure
 from symflex.transfer import AnyBoundFunction
 
 MODES = 8  # whose poles lie in the disc about 0
 WIDTH = 1e-6  # relative distance of the bounds
 DIGITS = 8
-SINGULAR = "largest singular value"
+SINGULAR, MET = "largest singular value", "largest singular value found"
 
 Rows = Sequence[Sequence[AnyBoundFunction]]
 
@@ -65,6 +65,14 @@ def find_matrix_peak(rows: Rows, band: Ends | None = None) -> Peak:
         limits = (0.0, inf) if ends is None else tuple(float(2 * pi * ball(x)) for x in (ends.low, ends.high))
     found = largest_gain(matrix, None if ends is None else (limits[0], limits[1]), WIDTH)
     beyond = arb("inf") if found.omega == inf else None
-    return replace(
-        asked, magnitude=found.enclosure, places=found.places, beyond=beyond, reasons=found.reasons
-    )
+    reasons, magnitude, places = found.reasons, found.enclosure, found.places
+    with precision(BITS):
+        is_wide = not found.most <= found.least * (1 + 2 * arb(WIDTH))
+    if is_wide and magnitude.is_finite():
+        reasons += (f"values up to {figure(found.most, DIGITS)} are not excluded",)
+    if reasons:
+        # What is met is a fact; whether it is the largest is not.
+        magnitude = found.least
+        places = (arb(found.omega),) if found.omega < inf else ()
+        asked = replace(asked, what=MET)
+    return replace(asked, magnitude=magnitude, places=places, beyond=beyond, reasons=reasons)

@@ -490,6 +490,11 @@ def _channels(model: ReducedModel) -> tuple[tuple[LargestGain, ...], ...]:
     if rows == columns == 1 or not model.error.most.is_finite():
         return tuple((model.error,) * columns for _ in range(rows))
     ends = None if model.band is None else (2 * pi * model.band[0], 2 * pi * model.band[1])
-    return tuple(
-        tuple(largest_gain(model.difference.entry(i, j), ends) for j in range(columns)) for i in range(rows)
-    )
+    most = model.error.most
+
+    def channel(i: int, j: int) -> LargestGain:
+        found = largest_gain(model.difference.entry(i, j), ends)
+        # No entry is larger than the largest singular value.
+        return replace(found, most=most) if found.most > most or not found.most.is_finite() else found
+
+    return tuple(tuple(channel(i, j) for j in range(columns)) for i in range(rows))

@@ -26,6 +26,14 @@ def test_peaks_known_by_hand():
     assert rising.beyond is not None and "as the frequency grows" in rising.place
 
 
+def test_the_larger_entry_on_a_diagonal_is_met():
+    # By hand: the singular values of a diagonal matrix are the magnitudes of its entries.
+    for outputs in ({"y": "2*u", "z": "3*v"}, {"y": "2*u", "z": "3*v/(s + 1)"}):
+        found = matrix(**outputs).peak()
+        assert found.certified and contains(found.magnitude, 3)
+        assert float(found.magnitude.rad()) < 1e-5
+
+
 def test_two_masses_peak_as_their_first_mode():
     # By hand: of the modes (1, 1)/sqrt(2) and (1, -1)/sqrt(2) the first is 1/(s^2 + 0.2 s + 100).
     zeta = 0.2 / 20
