@@ -153,7 +153,8 @@ def driving_function(model: Model, port: str | None) -> BoundTransferFunction:
     """Return the driving-point function of a machine at a port; SF502 where it is not written out."""
     bound = _Machine.of(model, port, 12).bound
     if bound is None:
-        raise BudgetError(Diagnostic("SF502", NOT_WRITTEN))
+        hint = "'symflex passivity' still judges it by its energy; only the picture needs the function"
+        raise BudgetError(Diagnostic("SF502", NOT_WRITTEN, None, hint))
     return bound
 
 

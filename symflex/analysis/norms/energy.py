@@ -289,7 +289,8 @@ def integrated(
     open_share = next((share for share in done.undecided if not share.value.is_finite()), None)
     if open_share is not None:
         message = f"the integral near {short_hertz(arb(open_share.ends[0]))} Hz is not decided"
-        raise BudgetError(Diagnostic("SF505", message))
+        hint = "ask for single pairs, or give more damping"
+        raise BudgetError(Diagnostic("SF505", message, None, hint))
     with precision(BITS):
         total = sum((share.value for share in done.undecided), arb(0))
         return total + arb(0).union(tail), reasons
