@@ -98,6 +98,19 @@ class Expanded:
         return self._enclosed[bits](s)
 
 
+def check_delays(functions: Sequence[Sequence[Expanded]], hint: str) -> None:
+    """Raise SF802 where the delays that were left out are not those of inputs and outputs.
+
+    Those change no singular value; others do, as they turn one entry of a matrix against another.
+    """
+    delays = [[f.delay for f in row] for row in functions]
+    first = delays[0]
+    pairs = [(x - row[0], y - first[0]) for row in delays for x, y in zip(row, first, strict=True)]
+    if any(not (x - y).contains(0) for x, y in pairs):
+        message = "pairs of the matrix have delays that are not those of their input and output"
+        raise UncertifiedError(Diagnostic("SF802", message, None, hint))
+
+
 def without_delay(bound: AnyBoundFunction) -> tuple[AnyBoundFunction, arb]:
     """Return a function without the delay of all of it, which changes no magnitude, and the delay [s]."""
     total = arb(0)

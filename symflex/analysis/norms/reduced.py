@@ -24,7 +24,7 @@ from flint import acb, acb_mat, arb
 
 from symflex.analysis.norms.axis import MatrixOnAxis
 from symflex.analysis.norms.energy import H2Norm, integrated, noise_filter
-from symflex.analysis.norms.expanded import BITS, DIGITS, Expanded, expanded, static_value
+from symflex.analysis.norms.expanded import BITS, DIGITS, Expanded, check_delays, expanded, static_value
 from symflex.analysis.norms.largest import LargestGain, eigenvalue_bound, eigenvalue_met, largest_gain
 from symflex.analysis.norms.matrix_peak import matrix_on_axis
 from symflex.analysis.norms.modal_model import ModalModel, modal_model
@@ -402,7 +402,7 @@ def reduced_model(
     check_causal(rows[0][0].source.model, "a reduced model")
     first = modes if modes is not None else rows[0][0].source.model.analysis.modes or 5
     poles = _Poles.of(rows, first)
-    _check_delays(poles)
+    check_delays(poles.functions, "reduce one pair at a time")
     if error is None:
         found = _of_modes(poles, first, band)
         return replace(found, channels=_channels(found))
@@ -422,16 +422,6 @@ def reduced_model(
             return replace(found, channels=_channels(found))
     message = f"more than {MOST_MODES} modes are needed for an error of {error:g}"
     raise UncertifiedError(Diagnostic("SF405", message, None, "allow a larger error, or give a --band"))
-
-
-def _check_delays(poles: _Poles) -> None:
-    """Raise SF802 where delays are not those of inputs and outputs."""
-    delays = [[f.delay for f in row] for row in poles.functions]
-    first = delays[0]
-    pairs = [(x - row[0], y - first[0]) for row in delays for x, y in zip(row, first, strict=True)]
-    if any(not (x - y).contains(0) for x, y in pairs):
-        message = "pairs of the matrix have delays that are not those of their input and output"
-        raise UncertifiedError(Diagnostic("SF802", message, None, "reduce one pair at a time"))
 
 
 def _static(poles: _Poles) -> arb | None:

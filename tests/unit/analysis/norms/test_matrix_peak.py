@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import symflex
+from symflex.errors import SymflexError
 from tests.unit.analysis.norms.models import cantilever, two_masses
 
 
@@ -51,3 +52,9 @@ def test_a_band_and_a_grid_agree_for_a_beam():
     largest = found.singular_values(2j * np.pi * np.linspace(30, 400, 300))[0].max()
     assert peak.certified and largest <= float(peak.magnitude.upper()) * (1 + 1e-12)
     assert float(peak.magnitude.lower()) <= found.singular_values(2j * np.pi * 30)[0] * (1 + 1e-9)
+
+
+def test_delays_that_turn_entries_against_each_other_are_refused():
+    # Both entries of the first row in phase give 2.30278, in opposite phase 2.61803.
+    with pytest.raises(SymflexError, match="SF802"):
+        matrix(y="u + exp(-s)*v", z="u - 2*v").peak()
