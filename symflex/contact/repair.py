@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 from flint import arb
 
 from symflex.balls import precision
-from symflex.contact.environment import Kind, Put, put_at, touched
+from symflex.contact.environment import LAWS, Kind, Put, put_at, touched
 from symflex.contact.real_part import RealPart, least_part
 from symflex.model import ContactPort, Model
 from symflex.roots.root import figure, real_json
@@ -61,11 +61,13 @@ class Repair:
             if each is not None:
                 limit, put = each
                 name = put.type_name.replace("_", " ")
-                lines.append(f"a {name} {how}: {_value(put, limit, word, digits)} ({put.text} is enough)")
+                lines.append(
+                    f"{_with_article(name)} {how}: {_value(put, limit, word, digits)} ({put.text} is enough)"
+                )
         for less, enough in self.storage:
             name = enough.type_name.replace("_", " ")
             unit = f"{float(less.value):.10g} {less.unit}"
-            lines.append(f"a {name} in parallel: {enough.text} is enough, {unit} is not")
+            lines.append(f"{_with_article(name)} in parallel: {enough.text} is enough, {unit} is not")
         return [*lines, *self.reasons]
 
     def to_json_dict(self, digits: int) -> dict[str, object]:
@@ -148,7 +150,20 @@ def repairs(
     if bound.is_rational and has_faults and not real.active and check is not None:
         storage = [pair for kind in STORING if (pair := _storage(model, port, bound, kind, check))]
         reasons += [] if storage else [NO_STORAGE]
-    return Repair(parallel, series, tuple(reasons), tuple(storage))
+    return Repair(parallel, series, tuple(_of_domain(r, port) for r in reasons), tuple(storage))
+
+
+def _of_domain(reason: str, port: ContactPort) -> str:
+    """Return a reason in the words of a port's domain: of capacitors in place of masses, say."""
+    for kind, (type_name, _, _) in LAWS[port.domain].items():
+        name, old = type_name.replace("_", " "), LAWS["translation"][kind][0]
+        reason = reason.replace(f"a {old}", _with_article(name)).replace(f"no {old}", f"no {name}")
+        reason = reason.replace(f"or {old}", f"or {name}")
+    return reason
+
+
+def _with_article(name: str) -> str:
+    return f"{'an' if name[0] in 'aeiou' else 'a'} {name}"
 
 
 def _storage(

@@ -3,6 +3,8 @@
 import pytest
 
 from symflex.contact.passivity import find_passivity
+from symflex.contact.repair import STORES, UNSTABLE, _of_domain
+from symflex.model import ContactPort, NodeReference
 from tests.unit.contact.machines import DELAYED, LAGGED, machine
 
 
@@ -43,3 +45,10 @@ def test_springs_and_masses_are_said_not_to_repair():
     assert "a spring or a mass alone leaves the sign of the real part as it is" in (
         find_passivity(machine(), "tip").repair.reasons
     )
+
+
+def test_reasons_name_elements_of_the_domain():
+    port = ContactPort("p", (NodeReference("p"),), "acoustic")
+    words = _of_domain(STORES, port)
+    assert words.startswith("an acoustic mass or an acoustic compliance alone")
+    assert _of_domain(UNSTABLE, port).startswith("no acoustic resistance in series")
