@@ -267,7 +267,7 @@ class DiscSearch:
     def _side(self, series: DiscSeries, name: str) -> DiscSide | None:
         """Return all roots of one function; ``None`` where they are not all proved."""
         is_even = series.is_real and self.symmetric[name == "num"]
-        count = series.shortened.count()
+        count = series.count()
         at_zero = series.order_at_zero()
         size = len(self.equations.entries) - (name == "den")
         exact = not at_zero or order_at_zero(self.equations, size, at_zero) == at_zero

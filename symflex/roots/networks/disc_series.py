@@ -31,11 +31,6 @@ LEFT_OUT = 8  # times what coefficients lack, that leaving some out may add: thr
 WITHIN = 0.9  # share of its distance to 0 by which the function may move on a step
 WIDENINGS = 8
 FEWEST_POINTS = 8  # half of them, on a circle
-LONG = 100  # terms from which fewer are worth the search for them
-ON_CIRCLE = 64  # points at which a function's size on the circle is looked at
-LEFT_OUT_OF_LONG = 2.0**-40  # share of the least size there that terms left out may have
-OUTSIDE = 1.1  # size up to which guesses from fewer terms may be of roots in the disc
-NEWTON_STEPS = 12  # from such a guess to all digits; each doubles them at a simple root
 
 
 class RootNearCircleError(Exception):
@@ -75,24 +70,6 @@ class DiscSeries:
                 slope += (len(terms) - 1) * abs(terms.pop())
                 off = more
         return DiscSeries(radius, acb_poly(terms), arb(off), slope, bits, is_real)
-
-    @cached_property
-    def shortened(self) -> DiscSeries:
-        """The same function in fewer terms, if those of the highest powers are small beside it on the circle.
-
-        What is left out counts as error, so that this encloses it, too.
-        """
-        terms = self.polynomial.coeffs()
-        if len(terms) < LONG:
-            return self
-        with precision(self.bits):
-            around = acb.dft([sum(terms[k::ON_CIRCLE], acb(0)) for k in range(ON_CIRCLE)])
-            most = min((abs(value).lower() for value in around), key=float) * LEFT_OUT_OF_LONG
-            off, slope = self.off, self.slope_off
-            while len(terms) > FEWEST_POINTS and (more := (off + abs(terms[-1])).upper()) < most:
-                slope += (len(terms) - 1) * abs(terms.pop())
-                off = more
-        return DiscSeries(self.radius, acb_poly(terms), off, slope, self.bits, self.is_real)
 
     def plus(self, other: DiscSeries, times: Fraction) -> DiscSeries:
         """Return the sum with a multiple of another function in the same disc."""
@@ -220,9 +197,8 @@ class DiscSeries:
 
     def approximate(self, at_zero: int, *, is_even: bool = False) -> list[acb]:
         """Return approximations of roots but 0, from inside outwards; none where they are not separated."""
-        short = self.shortened
         with precision(self.bits):
-            first, *others = (c.mid() for c in short.polynomial.coeffs()[at_zero :: 1 + is_even])
+            first, *others = (c.mid() for c in self.polynomial.coeffs()[at_zero :: 1 + is_even])
             # So slight a change splits roots that coincide exactly: none but simple ones are found.
             polynomial = acb_poly([(first * (1 + arb(2) ** (1 - self.bits))).mid(), *others])
             spend()
@@ -232,8 +208,6 @@ class DiscSeries:
                 return []
             if is_even:
                 roots = [x for r in roots for x in (r.sqrt().mid(), -r.sqrt().mid())]
-            if short is not self:
-                roots = [self._nearest(x) for x in roots if bool(abs(x) < OUTSIDE)]
             close = 2.0 ** (-self.bits // 4)
             guesses = [
                 acb(x.real) if self.is_real and abs(x.imag) < abs(x) * close else x
@@ -242,48 +216,21 @@ class DiscSeries:
             ]
             return sorted(guesses, key=lambda x: float(abs(x).mid()))
 
-    def _nearest(self, x: acb) -> acb:
-        """Return a guess of a root after Newton steps."""
-        for _ in range(NEWTON_STEPS):
-            value, slope = self._at(x)
-            step = (value / slope).mid()
-            if not step.is_finite() or abs(step) > abs(x):
-                break
-            x = (x - step).mid()
-            if abs(step) < abs(x) * arb(2) ** (-self.bits // 2):
-                break
-        return x
-
-    def _at(self, x: acb) -> tuple[acb, acb]:
-        """Return the polynomial and its derivative at a point."""
-        # Horner's rule turns the box of a value at every step, and widens it by up to sqrt(2).
-        with precision(self.bits + len(self.polynomial) // 2):
-            return self.polynomial(x), self._derivatives[0](x)
-
-    @cached_property
-    def _bend(self) -> arb:
-        """A bound on the polynomial's second derivative in the unit disc."""
-        sizes = (k * (k - 1) * abs(c) for k, c in enumerate(self.polynomial.coeffs()))
-        return sum(sizes, arb(0)).abs_upper()
-
     def proved(self, guess: acb) -> acb | None:
         """Return a box about a guess that holds exactly one root; ``None`` where none is proved."""
         with precision(self.bits):
             x = guess.mid()
             on_line = self.is_real and bool(x.imag == 0)
-            value, slope = self._at(x)
-            value, slope = value + ball_about_zero(self.off), slope + ball_about_zero(self.slope_off)
+            # Horner's rule would turn a box at every step, and widen it.
+            local = self.about(x)
+            value = local[0] + ball_about_zero(self.off)
+            slope = self._slope(local, x)
             if slope.contains(0):
                 return None
             reach = (abs(value / slope) * 4).abs_upper()
-            local: Sequence[acb] = ()
             for _ in range(WIDENINGS):
                 box = x + acb(arb(0, reach), arb(0, 0 if on_line else reach))
-                along = slope + ball_about_zero(self._bend * (box - x).abs_upper())
-                if along.contains(0) or not abs(box) < 1:
-                    local = local or self.about(x)
-                    along = self._slope(local, box)
-                step = value / along
+                step = value / self._slope(local, box)
                 if stays_inside(step.real if on_line else step, reach):
                     return box
                 reach = (reach * 4).abs_upper()
