@@ -42,6 +42,7 @@ from symflex.loops.spread import SpreadStability, find_spread
 from symflex.loops.stability_map import StabilityMap
 from symflex.model import ContactPort, Model, ModelParameter, Setting, load_with
 from symflex.model.ports import port_named
+from symflex.model.sampled import refused as sampled_refused
 from symflex.model.spec import read
 from symflex.model.spec.read import NETLISTS
 from symflex.options import ContactOptions, StabilityOptions, gain_ends
@@ -245,7 +246,13 @@ def _beside(
     given: ContactOptions,
     values: Mapping[str, Setting],
 ) -> CoupledStability:
-    """Return what holds of a machine that touches another one at its port of a name."""
+    """Return what holds of a machine that touches another one at its port of a name.
+
+    ModelError: SF261 where the controller of either takes samples.
+    """
+    for each in (machine, other):
+        if each.sampled is not None:
+            raise sampled_refused(each)
     model = with_values(joined(machine, port, other, port_named(other, name)), values)
     parts = tuple((each.element.type_name, "", each.name) for each in other.elements)
     answer = _answer(model, given, given.over, {}) if given.over else _located(model)

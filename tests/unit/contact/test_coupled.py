@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from symflex import Model, loads
-from symflex.errors import SpecError, UsageError
+from symflex.errors import SpecError, SymflexError, UsageError
 
 POLYNOMIAL = np.polynomial.polynomial
 
@@ -174,3 +174,23 @@ def test_units_of_letters_follow_from_the_place() -> None:
     assert found.is_stable
     with pytest.raises(SpecError, match="SF203"):
         loads(FORCE_LOOP).contact("touch", "k_e + m_1*s", k_e=1)
+
+
+SAMPLED_TOOL = """symflex = 1
+parameters = { T = "1 ms", K = "9 N/m" }
+sampled = { period = "T" }
+blocks = { w = "K/z" }
+inputs = { F = { force = "q" } }
+outputs = { Q = "q" }
+[elements]
+m = { type = "mass", at = "q", m = 1 }
+f = { type = "force_source", at = "q", f = "-w*q" }
+d = { type = "damper", between = ["q", "ground"], b = 1 }
+"""
+
+
+def test_a_tool_whose_controller_takes_samples_is_refused(tmp_path):
+    tool = tmp_path / "tool.toml"
+    tool.write_text(SAMPLED_TOOL)
+    with pytest.raises(SymflexError, match="SF261"):
+        loads(FORCE_LOOP).contact("x_touch", f"{tool}:q", z_e=0.5)
