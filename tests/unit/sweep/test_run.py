@@ -295,9 +295,11 @@ def test_processes_end_at_once_where_an_exception_leaves_their_block():
         for _ in range(4):
             pool.submit(time.sleep, 60)
         raise KeyError
-    for worker in set(multiprocessing.active_children()) - others:
-        worker.join(10)
-    assert set(multiprocessing.active_children()) <= others
+    # One that was only being started may be listed later than the others.
+    while (left := set(multiprocessing.active_children()) - others) and time.monotonic() - begun < 20:
+        for worker in left:
+            worker.join(0.1)
+    assert not left
     assert time.monotonic() - begun < 30
 
 
