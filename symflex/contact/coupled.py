@@ -27,6 +27,7 @@ from symflex.contact.hybrid import HybridPassivity, find_hybrid
 from symflex.contact.joined import joined
 from symflex.contact.law import (
     ANY,
+    MECHANICAL,
     Environment,
     read_environment,
     share_name,
@@ -65,7 +66,6 @@ LAWS = {
 }
 SPECIFICATIONS = (".toml", *NETLISTS)  # ends of names of files
 HELD = {ANY: "every passive one", "short": "nothing is left there"}  # of environments without elements
-MOTIONS = ("translation", "rotation")  # domains in which an environment is a force over a displacement
 SIZES = {
     "k": (1, 0),
     "b": (1, -1),
@@ -338,7 +338,7 @@ def _size(machine: Model, port: ContactPort) -> tuple[float, float]:
         return 1.0, 1.0
     if not (isfinite(answer) and answer):
         return 1.0, omega
-    return (omega / answer if port.domain in MOTIONS else answer), omega
+    return (omega / answer if port.domain in MECHANICAL else answer), omega
 
 
 def _scale(environment: Environment, letter: str, size: tuple[float, float]) -> Fraction:

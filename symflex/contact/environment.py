@@ -19,10 +19,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import log10
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE
-from symflex.contact.port import at_port, with_branch, with_hanging_mass
+from symflex.contact.port import ADMITTANCES, ORDER, Kind, at_port, with_branch, with_hanging_mass
 from symflex.errors import SymflexError
 from symflex.expressions import Name, Power, number, product_of, quotient, sum_of
 from symflex.library.elements import ELEMENTS
@@ -38,31 +38,6 @@ if TYPE_CHECKING:
     from symflex.roots import Root
     from symflex.transfer import BoundTransferFunction
 
-Kind = Literal["elastic", "inertial", "dissipative"]
-ORDER: dict[Kind, int] = {"elastic": -1, "inertial": 1, "dissipative": 0}  # of s in the admittance
-LAWS: dict[str, dict[Kind, tuple[str, str, bool]]] = {
-    "translation": {
-        "elastic": ("spring", "k", False),
-        "inertial": ("mass", "m", False),
-        "dissipative": ("damper", "b", False),
-    },
-    "rotation": {
-        "elastic": ("torsion_spring", "k", False),
-        "inertial": ("inertia", "J", False),
-        "dissipative": ("rotary_damper", "b", False),
-    },
-    "electrical": {
-        "elastic": ("inductor", "L", True),
-        "inertial": ("capacitor", "C", False),
-        "dissipative": ("resistor", "R", True),
-    },
-    "acoustic": {
-        "elastic": ("acoustic_mass", "M", True),
-        "inertial": ("acoustic_compliance", "C", False),
-        "dissipative": ("acoustic_resistance", "R", True),
-    },
-}
-"""By domain, elements with the admittances a/s, a s and a: type, parameter, and whether that is 1/a."""
 STEPS = (1.1, 0.9, 1.5, 0.6, 3.0, 0.2, 1.02, 0.98)  # shares of what puts a pole on the axis
 SHARES = (0.3, 0.1, 0.03, 0.01, 0.003)  # of the machine's dynamic stiffness, of a spring with a mass
 INSIDE = (0.5, 0.2, 0.8, 0.05, 0.95)  # where in a band a hanging mass is tuned to
@@ -136,7 +111,7 @@ class Example:
 
 def put_at(port: ContactPort, kind: Kind, admittance: float, *, is_up: bool | None = None) -> Put:
     """Return the element of an admittance a/s, a s or a, its value rounded, up or down where that is said."""
-    type_name, parameter, is_reciprocal = LAWS[port.domain][kind]
+    type_name, parameter, is_reciprocal = ADMITTANCES[port.domain][kind]
     value = 1 / admittance if is_reciprocal else admittance
     up = None if is_up is None else is_up != is_reciprocal
     return Put(kind, type_name, parameter, _rounded(value, up))
@@ -223,7 +198,7 @@ def _candidates(
 
 def _is_reciprocal(put: Put) -> bool:
     """Tell whether the value is 1/a of the admittance a/s, a s or a."""
-    laws = (law for laws in LAWS.values() for law in laws.values())
+    laws = (law for laws in ADMITTANCES.values() for law in laws.values())
     return any(law == (put.type_name, put.parameter, True) for law in laws)
 
 

@@ -10,13 +10,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
-from symflex.contact.port import free_name, taken_names
+from symflex.contact.port import taken_names
 from symflex.errors import refused
 from symflex.expressions import Attribute, Call, Expression, Name, names, number, substitute
 from symflex.library.elements import ELEMENTS
 from symflex.model import ContactPort, Model, NodeReference, PlacedElement
 from symflex.model.model import rewritten
-from symflex.model.scope import RESERVED
+from symflex.model.scope import RESERVED, free_name
 
 JOINT = "joint"  # the element between both ports
 

@@ -18,7 +18,7 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from symflex.algebra import LAPLACE
-from symflex.contact.port import free_name
+from symflex.contact.port import ADMITTANCES, Kind
 from symflex.errors import Source, Text, refused
 from symflex.expressions import (
     Expression,
@@ -42,36 +42,48 @@ from symflex.expressions import (
 from symflex.library.elements import ELEMENTS
 from symflex.model import ContactPort, Model, NodeReference
 from symflex.model.model import IMAGINARY
+from symflex.model.scope import free_name
 from symflex.model.spec.positions import Literal
 from symflex.model.spec.write import write
 from symflex.quantities import looks_like_quantity
 
 ANY: Final = "any"  # every passive environment
 OPTION: Final = "--environment"
+MECHANICAL: Final = ("translation", "rotation")
+OTHER_CLASSES: Final[Mapping[str, Mapping[str, Kind]]] = {
+    "electrical": {"resistor": "dissipative", "inductor": "elastic", "capacitor": "inertial"},
+    "acoustic": {"resistance": "dissipative", "mass": "elastic", "compliance": "inertial"},
+}
+"""Names of classes at ports that do not move, by what they store."""
+
+
+def part(domain: str, kind: Kind) -> tuple[str, str]:
+    """Return the element of a kind, and its parameter."""
+    type_name, parameter, _ = ADMITTANCES[domain][kind]
+    return type_name, parameter
+
+
 PARTS: Final[Mapping[str, tuple[tuple[str, str], ...]]] = {
-    "translation": (("spring", "k"), ("damper", "b"), ("mass", "m")),
-    "rotation": (("torsion_spring", "k"), ("rotary_damper", "b"), ("inertia", "J")),
-    "electrical": (("resistor", "R"),),
-    "acoustic": (("acoustic_resistance", "R"),),
+    domain: tuple(part(domain, kind) for kind in ("elastic", "dissipative", "inertial"))
+    if domain in MECHANICAL
+    else (part(domain, "dissipative"),)
+    for domain in ADMITTANCES
 }
 """Elements whose value stands beside each power of s, with their parameter; all else is the first."""
-_MECHANICAL: Final = ("spring", "damper", "mass", "spring-damper", "wall")
 CLASSES: Final[Mapping[str, Mapping[str, tuple[tuple[str, str], ...]]]] = {
-    domain: dict(zip(_MECHANICAL, (*((part,) for part in parts), parts[:2], ()), strict=True))
-    for domain, parts in PARTS.items()
-    if len(parts) > 1
-} | {
-    "electrical": {
-        "resistor": (("resistor", "R"),),
-        "inductor": (("inductor", "L"),),
-        "capacitor": (("capacitor", "C"),),
-        "short": (),
+    **{
+        domain: {
+            "spring": PARTS[domain][:1],
+            "damper": PARTS[domain][1:2],
+            "mass": PARTS[domain][2:],
+            "spring-damper": PARTS[domain][:2],
+            "wall": (),
+        }
+        for domain in MECHANICAL
     },
-    "acoustic": {
-        "resistance": (("acoustic_resistance", "R"),),
-        "mass": (("acoustic_mass", "M"),),
-        "compliance": (("acoustic_compliance", "C"),),
-        "short": (),
+    **{
+        domain: {**{name: (part(domain, kind),) for name, kind in names.items()}, "short": ()}
+        for domain, names in OTHER_CLASSES.items()
     },
 }
 """Elements of each class with their parameter, by domain; one without any holds the port still."""

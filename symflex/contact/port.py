@@ -13,10 +13,10 @@ With ``is_imposed`` the partner drives, and what has to be delivered answers: ``
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
-from itertools import chain, count
+from typing import Literal
 
 from symflex.algebra import LAPLACE
 from symflex.expressions import Attribute, Expression, Name, negative, number, product_of, sum_of
@@ -33,8 +33,34 @@ from symflex.model import (
 )
 from symflex.model.model import INPUT_KINDS, PORT_PAIRS
 from symflex.model.network import variable_of
+from symflex.model.scope import free_name
 from symflex.quantities import unit_of
 
+Kind = Literal["elastic", "inertial", "dissipative"]
+ORDER: dict[Kind, int] = {"elastic": -1, "inertial": 1, "dissipative": 0}  # of s in the admittance
+ADMITTANCES: dict[str, dict[Kind, tuple[str, str, bool]]] = {
+    "translation": {
+        "elastic": ("spring", "k", False),
+        "inertial": ("mass", "m", False),
+        "dissipative": ("damper", "b", False),
+    },
+    "rotation": {
+        "elastic": ("torsion_spring", "k", False),
+        "inertial": ("inertia", "J", False),
+        "dissipative": ("rotary_damper", "b", False),
+    },
+    "electrical": {
+        "elastic": ("inductor", "L", True),
+        "inertial": ("capacitor", "C", False),
+        "dissipative": ("resistor", "R", True),
+    },
+    "acoustic": {
+        "elastic": ("acoustic_mass", "M", True),
+        "inertial": ("acoustic_compliance", "C", False),
+        "dissipative": ("acoustic_resistance", "R", True),
+    },
+}
+"""By domain, elements with the admittances a/s, a s and a: type, parameter, and whether that is 1/a."""
 RATES = {"translation": "v", "rotation": "omega", "electrical": "v", "acoustic": "p"}
 """What answers what is delivered, as formulas call it."""
 
@@ -164,8 +190,3 @@ def taken_names(model: Model) -> set[str]:
     scope = scope_of(model)
     outputs = (o.name for o in model.outputs)
     return {*scope.meanings, *scope.owners, *outputs, *scope.unknowns, *(e.name for e in model.elements)}
-
-
-def free_name(name: str, taken: Container[str]) -> str:
-    """Return a name that nothing has: this one, or with a number."""
-    return next(n for n in chain((name,), (f"{name}_{i}" for i in count(2))) if n not in taken)

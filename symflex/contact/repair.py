@@ -18,7 +18,8 @@ from typing import TYPE_CHECKING
 from flint import arb
 
 from symflex.balls import precision
-from symflex.contact.environment import LAWS, Kind, Put, put_at, touched
+from symflex.contact.environment import Put, put_at, touched
+from symflex.contact.port import ADMITTANCES, Kind
 from symflex.contact.real_part import RealPart, least_part
 from symflex.model import ContactPort, Model
 from symflex.roots.root import figure, real_json
@@ -155,8 +156,8 @@ def repairs(
 
 def _of_domain(reason: str, port: ContactPort) -> str:
     """Return a reason in the words of a port's domain: of capacitors in place of masses, say."""
-    for kind, (type_name, _, _) in LAWS[port.domain].items():
-        name, old = type_name.replace("_", " "), LAWS["translation"][kind][0]
+    for kind, (type_name, _, _) in ADMITTANCES[port.domain].items():
+        name, old = type_name.replace("_", " "), ADMITTANCES["translation"][kind][0]
         reason = reason.replace(f"a {old}", _with_article(name)).replace(f"no {old}", f"no {name}")
         reason = reason.replace(f"or {old}", f"or {name}")
     return reason

@@ -17,7 +17,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import chain, count
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE
@@ -45,7 +44,7 @@ from symflex.model.model import (
 )
 from symflex.model.network import DraftElement, domain_of, read_reference, variable_of
 from symflex.model.reading import Reader
-from symflex.model.scope import LISTED_NAMES
+from symflex.model.scope import LISTED_NAMES, free_name
 from symflex.model.spec import KeyValue, TableValue
 
 if TYPE_CHECKING:
@@ -136,7 +135,7 @@ def _driven(draft: Draft, entry: KeyValue, domain: str, pair: Sequence[str], ord
     """Return a draft with the node of a port: ``s^order * node`` is the output, a source feeds the input."""
     source, output = pair
     taken = draft.names | {e.name for e in draft.elements} | {entry.key}
-    through = _free(f"{THROUGH_NAME[domain]}_into_{entry.key}", taken)
+    through = free_name(f"{THROUGH_NAME[domain]}_into_{entry.key}", taken)
     fed: Expression = sum_of([Name(source), Name(through)])
     draft = rewritten(draft, lambda e: replace_values(e, {Name(source): fed}))
     answer = next(o.expression for o in draft.outputs if o.name == output)
@@ -149,7 +148,7 @@ def _driven(draft: Draft, entry: KeyValue, domain: str, pair: Sequence[str], ord
     element = ELEMENTS[f"{PORT_PAIRS[domain].delivered}_source"]
     (place,), (value,) = element.ports, element.parameters
     feeding = DraftElement(
-        _free(f"feed_{entry.key}", taken),
+        free_name(f"feed_{entry.key}", taken),
         element,
         ((place, (NodeReference(entry.key, span=entry.key_span),)),),
         ((value.name, negative(Name(through))),),
@@ -157,11 +156,6 @@ def _driven(draft: Draft, entry: KeyValue, domain: str, pair: Sequence[str], ord
     )
     unknown = Signal(through, Equation(node, answer), entry.key_span)
     return replace(draft, elements=(*draft.elements, feeding), signals=(*draft.signals, unknown))
-
-
-def _free(name: str, taken: set[str]) -> str:
-    """Return a name that nothing has: this one, or with a number."""
-    return next(n for n in chain((name,), (f"{name}_{i}" for i in count(2))) if n not in taken)
 
 
 def _read(reader: Reader, entry: KeyValue, model: Model) -> ContactPort | None:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import chain, count
 from typing import Literal
 
 from symflex.algebra import LAPLACE
@@ -334,6 +335,15 @@ class _Meanings:
             return
         described = f"the reaction of the input '{source.name}'"
         self.offer(kind.quantity, Meaning("through", source.name, described, kind.delivered(source.name)))
+
+
+def free_name(name: str, taken: Container[str]) -> str:
+    """Return a name that nothing has: this one, or with a number.
+
+    >>> free_name("wall", {"wall", "wall_2"})
+    'wall_3'
+    """
+    return next(n for n in chain((name,), (f"{name}_{i}" for i in count(2))) if n not in taken)
 
 
 def scope_of(model: Model) -> ModelScope:

@@ -3,15 +3,16 @@
 import numpy as np
 import pytest
 
-from symflex.contact.environment import LAWS, put_at
+from symflex.contact.environment import put_at
 from symflex.contact.passivity import find_passivity
+from symflex.contact.port import ADMITTANCES
 from symflex.library.elements import ELEMENTS
 from symflex.model.ports import port_named
 from tests.unit.contact.machines import DELAYED, LAGGED, machine
 
 
 def test_every_element_has_its_parameter():
-    for laws in LAWS.values():
+    for laws in ADMITTANCES.values():
         for type_name, parameter, _ in laws.values():
             assert parameter in {p.name for p in ELEMENTS[type_name].parameters}
 
