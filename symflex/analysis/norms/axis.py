@@ -19,12 +19,14 @@ from math import inf
 from flint import acb, acb_mat, acb_poly, arb
 
 from symflex.analysis.norms.expanded import BITS, Expanded
-from symflex.balls import precision
+from symflex.balls import Part, precision
 from symflex.budget import spend
+from symflex.loops.axis import pieces
 from symflex.roots.distributed.far_out import SECTORS, FunctionFarOut
 from symflex.roots.root import Root, overlap
 from symflex.transfer import BoundTransferFunction
 
+RATIO = 1.12  # of the ends of first pieces
 ORDER = 6  # powers of a form in a disc
 CIRCLE_POINTS = 14  # values that make the powers of a form beyond, and their number
 REACH = 2  # radius of the disc about a piece beyond, over half the piece
@@ -115,6 +117,20 @@ class MatrixOnAxis:
     def used(self) -> float:
         """Frequency [rad/s] up to which all functions are known by their series."""
         return min(function.used for function in self.every)
+
+    def in_discs(self, low: float, high: float) -> tuple[list[Part], float, list[float]]:
+        """Return first pieces [rad/s] on which series are used, where they end, and sizes of poles.
+
+        Pieces begin at ``low``; below the lowest pole's size they are one. Functions without waves and delays
+        are known by series everywhere: their pieces end at twice the size of the largest pole.
+        """
+        sizes = sorted({size for t in self.fractions if (size := float(abs(t.pole).mid())) > 0})
+        edge = min(self.used, high)
+        if edge == inf:
+            edge = 2 * sizes[-1] if sizes else 1.0
+        bottom = low or min([edge, *sizes]) / 100
+        below: list[Part] = [(0.0, bottom)] if low < bottom else []
+        return [*below, *pieces(bottom, edge, RATIO)], edge, sizes
 
     @property
     def reasons(self) -> tuple[str, ...]:

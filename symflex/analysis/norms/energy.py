@@ -20,7 +20,7 @@ from math import inf
 
 from flint import acb, arb, arb_poly
 
-from symflex.analysis.norms.axis import MatrixOnAxis, TaylorForm
+from symflex.analysis.norms.axis import RATIO, MatrixOnAxis, TaylorForm
 from symflex.analysis.norms.expanded import BITS, Expanded, expanded
 from symflex.balls import Branching, Open, Part, branch, halved, precision, settled
 from symflex.errors import BudgetError, Diagnostic, Source, UncertifiedError
@@ -40,7 +40,6 @@ NOISE, SHAPED = "white_noise", "shaped_noise"  # names in a model of what shapes
 SCHEMA = "symflex.h2/1"
 DIGITS = 6  # of an integral
 PRINTED = 12  # of a rational function's norm
-RATIO = 1.12  # of the ends of first pieces
 MOST_PIECES = 20_000
 FURTHER, STEP = 45, 2.0  # frequencies from which on a bound is tried
 NARROWEST = 1e-12  # relative width of a piece that is not halved any more
@@ -261,13 +260,8 @@ def integrated(
     """Return the integral of the squared Frobenius norm over frequencies [rad/s], and what is not proved."""
     low, high = band or (0.0, inf)
     integral = _Integral(matrix, shaper)
-    scales = sorted({size for t in matrix.fractions if (size := float(abs(t.pole).mid())) > 0})
-    edge = min(matrix.used, high)
-    if edge == inf:
-        edge = 2 * scales[-1] if scales else 1.0
-    bottom = low or min([edge, *scales]) / 100
-    starts = [(0.0, bottom)] if low < bottom else []
-    shares = [integral.share(ends, in_disc=True) for ends in (*starts, *pieces(bottom, edge, RATIO))]
+    starts, edge, _ = matrix.in_discs(low, high)
+    shares = [integral.share(ends, in_disc=True) for ends in starts]
     end, tail, reasons = high, arb(0), matrix.reasons
     if high == inf:
         end, tail = _tail(matrix, shaper, edge, integral.total)

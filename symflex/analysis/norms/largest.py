@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 from flint import acb, acb_mat, arb
 
-from symflex.analysis.norms.axis import MatrixOnAxis, TaylorForm, norm
+from symflex.analysis.norms.axis import RATIO, MatrixOnAxis, TaylorForm, norm
 from symflex.analysis.norms.expanded import BITS
 from symflex.balls import Branching, Open, Part, branch, halved, precision
 from symflex.loops.axis import ball_of, joined, pieces
@@ -28,7 +28,6 @@ from symflex.roots.root import short_hertz
 WIDTH = 1e-3  # relative distance of the bounds
 MOST_PIECES = 20_000
 SQUARINGS = 23  # of a matrix, whose trace is its largest eigenvalue's power then but for 1e-7
-RATIO = 1.12  # of the ends of first pieces beyond the discs
 NEAR = 1e-6  # relative half width of a piece at a pole's frequency, where a large value is met first
 NODES = 6  # on each side of the middle of a piece
 FURTHER, STEP = 40, 2.0  # frequencies from which on a bound is tried
@@ -196,14 +195,8 @@ def largest_gain(
     """
     low, high = band or (0.0, inf)
     search, reasons = _NormSearch(matrix, width), [*matrix.reasons]
-    scales = sorted({size for t in matrix.fractions if (size := float(abs(t.pole).mid())) > 0})
-    edge = min(matrix.used, high)
-    if edge == inf:  # rational
-        edge = 2 * scales[-1] if scales else 1.0
-    bottom = low or min([edge, *scales]) / 100
-    starts = [(0.0, bottom)] if low < bottom else []
-    starts += pieces(bottom, edge, RATIO)
-    for omega in scales:
+    starts, edge, sizes = matrix.in_discs(low, high)
+    for omega in sizes:
         if low < omega < edge:
             search.piece((omega * (1 - NEAR), omega * (1 + NEAR)), in_disc=True)
     waiting = [search.piece(ends, in_disc=True) for ends in starts]
