@@ -8,6 +8,7 @@ coherence tells or a function without structure leaves (:mod:`symflex.data.fitti
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
@@ -29,7 +30,7 @@ STEPS, ROUGH_STEPS, ROUGH = 80, 30, 1e-4  # of a search to the end, of one from 
 NO_FREE = Free()
 
 
-class ParameterResidual:
+class ParameterResidual(ABC):
     """Residuals and derivatives at a point of the search; the last point is kept."""
 
     machine: Machine
@@ -39,9 +40,9 @@ class ParameterResidual:
         self.machine = machine
         self._last: tuple[bytes, list[Values], list[Values]] = (b"", [], [])
 
+    @abstractmethod
     def parts(self, theta: Real, scales: Real) -> Iterator[tuple[Values, Values]]:
         """Yield residuals of each part of the data, and their derivatives by the point of the search."""
-        raise NotImplementedError
 
     def _at(self, x: Real) -> tuple[list[Values], list[Values]]:
         if self._last[0] == x.tobytes():
