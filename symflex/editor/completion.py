@@ -48,7 +48,7 @@ def completions(document: OpenDocument, offset: int) -> tuple[Completion, ...]:
 def _completions(document: OpenDocument, before: str, offset: int) -> Iterator[Completion]:
     path, key, used = _place(document.source.text, before, offset)
     if path is None:
-        yield from (Completion(k, "key", _says(v)) for k, v in json_schema()["properties"].items())
+        yield from (Completion(k, "key", _says(v)) for k, v in _schema()["properties"].items())
         return
     schema = _schema_at(path, _type_of(document.source.text, before, offset))
     if key is None:

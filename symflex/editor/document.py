@@ -57,9 +57,16 @@ class OpenDocument:
     """A text, what is right of it, and what is not."""
 
     source: Source
-    spec: Spec | None  # None beyond the limits of a text
     model: Model | None  # None when there is a problem
     problems: tuple[Diagnostic, ...]  # errors, or else warnings, in the order of the text
+
+    @cached_property
+    def spec(self) -> Spec | None:
+        """What of it is TOML; None beyond the limits of a text."""
+        try:
+            return parse_with_recovery(self.source)[0]
+        except SpecError:
+            return None
 
     @cached_property
     def names(self) -> tuple[Occurrence, ...]:
@@ -87,15 +94,11 @@ def examined(text: str, name: str, allow_outside: Sequence[str] = ()) -> OpenDoc
     """Return a text with its problems, those of ``symflex check``."""
     source = Source(name, text)
     try:
-        spec, _ = parse_with_recovery(source)
-    except SpecError as error:
-        return OpenDocument(source, None, None, error.diagnostics)
-    try:
         with Budget(seconds=MOST_SECONDS).entered():
             model = pipeline.loads(text, name, allow_outside)
-            return OpenDocument(source, spec, model, pipeline.warnings(model, pipeline.checked(model)))
+            return OpenDocument(source, model, pipeline.warnings(model, pipeline.checked(model)))
     except SymflexError as error:
-        return OpenDocument(source, spec, None, error.diagnostics)
+        return OpenDocument(source, None, error.diagnostics)
 
 
 def _names(root: TableValue) -> Iterator[Occurrence]:
