@@ -390,9 +390,13 @@ class PrimeSystem:
                     whole.append([values.get(j, 0) for j in range(width)])
             except ZeroDivisionError:
                 continue
+            # With shapes, which a list without rows has not: a model may have no unknowns.
             a, b, c, d = (
-                nmod_mat([row[left] for row in part], prime)
-                for part, left in product((whole[:size], whole[size:]), (slice(size), slice(size, None)))
+                nmod_mat(len(part), columns, [x for row in part for x in row[left]], prime)
+                for part, (columns, left) in product(
+                    (whole[:size], whole[size:]),
+                    ((size, slice(size)), (width - size, slice(size, None))),
+                )
             )
             det = int(a.det())
             if not det:

@@ -27,6 +27,13 @@ def test_a_lumped_matrix_with_loss_factors_is_searched() -> None:
     assert poles[0].loss_factor() is not None
 
 
+def test_gains_alone_have_neither_poles_nor_zeros() -> None:
+    text = 'symflex = 1\ninputs = { u = {}, v = {} }\noutputs = { y = "2*u + v", z = "4*u + 2*v", w = "u" }\n'
+    found = locate_matrix(model_of(text))
+    assert (found.located.all_poles, found.located.zeros, found.normal_rank) == ((), (), 2)
+    assert locate_matrix(model_of(text), ["y", "z"]).normal_rank == 1
+
+
 def test_a_pair_is_a_matrix_of_one_row_and_column() -> None:
     # By hand: X_1/F_1 of two masses has the zeros of the second on its spring, s^2 = -20.
     zeros = locate_matrix(model_of(TWO_MASSES), ["X_1"], ["F_1"]).located.zeros
