@@ -20,7 +20,7 @@ from functools import cached_property, partial
 
 from flint import arb, fmpz_mpoly
 
-from symflex.algebra import NO_KERNELS, Factored, Ring
+from symflex.algebra import LAPLACE, NO_KERNELS, Factored, Ring, degree_in
 from symflex.analysis.sampled_loop.in_letters import BACK, Ends, Fixed, Timing, pulse_of, pulse_over
 from symflex.analysis.sampled_loop.pulse import pulse_function
 from symflex.analysis.time_response.delayed_terms import delayed_quotient
@@ -189,6 +189,7 @@ def sampled_loop(model: Model, ranges: Mapping[str, Ends] | None = None) -> Samp
         message = "a loop with several sampled blocks, or one at several places, is not available yet"
         raise ModelError(Diagnostic("SF260", message, loop.period.span))
     (channel,) = loop.channels
+    _check_causal(model, channel, delay / period, symbolic)
     (tf,) = derive_all(observed(with_numbers(loop.model), channel.seen), [(channel.seen, channel.held)])
     bound = bind(tf.whole)
     delays = None if bound.is_rational else delayed_quotient(bound)
@@ -216,6 +217,31 @@ def _time(model: Model, expression: Expression, numbers: Mapping[str, ExactValue
     if value is None or value < 0:
         raise _no_time("a time of [sampled] is no positive rational number", expression)
     return value
+
+
+def _check_causal(model: Model, channel: SampledChannel, late: Fraction, symbolic: Collection[str]) -> None:
+    """Refuse a controller that is zero, or needs samples later than those that ``late`` periods bring."""
+    controller = substitute(channel.controller, {Z: Name(LAPLACE)})  # whose s is z
+    alone = Model(
+        parameters=tuple(p for p in model.parameters if p.name != Z),
+        inputs=(Input(DRIVEN, "signal"),),
+        outputs=(Output(CLOSED, Product((controller, Name(DRIVEN)))),),
+    )
+    (tf,) = derive_all(with_numbers(alone, symbolic), [(CLOSED, DRIVEN)])
+    sampled = model.sampled
+    spans = [b.span for b in model.blocks if sampled is not None and b.name in sampled.blocks]
+    span = spans[0] if spans else channel.controller.span
+    if tf.ratio.is_zero:
+        raise ModelError(Diagnostic("SF260", "the sampled block is zero, and closes no loop", span))
+    ahead = sum(
+        exponent * degree_in(factor, tf.ratio.ring.index[LAPLACE]) for factor, exponent in tf.ratio.factors
+    )
+    if ahead > late:
+        message = f"the sampled block needs a sample from the future: it grows as z^{ahead}"
+        hint = (
+            "divide it by z, or by = 'tustin' or 'backward' for a block in s; or say the 'delay' that it has"
+        )
+        raise ModelError(Diagnostic("SF260", message, span, hint))
 
 
 def _no_time(message: str, expression: Expression) -> ModelError:

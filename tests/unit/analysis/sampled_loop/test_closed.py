@@ -57,3 +57,26 @@ def test_what_is_no_loop_is_refused(given, code):
     with pytest.raises(ModelError) as caught:
         sampled_loop(model(**given))
     assert caught.value.diagnostics[0].code == code
+
+
+@pytest.mark.parametrize(
+    ("block", "says"),
+    [
+        ('C = "K*z"', "z^1"),
+        ('C = "K*z^3/(z - 0.5)"', "z^2"),
+        ('C = "0*K/z"', "is zero"),
+        ('C = "(1 - K)/z"', "is zero"),
+    ],
+)
+def test_a_controller_that_is_zero_or_knows_the_future_is_refused_at_its_block(block, says):
+    with pytest.raises(ModelError) as caught:
+        sampled_loop(model('y = "C*(r - y)/s"', blocks=block))
+    (problem,) = caught.value.diagnostics
+    assert problem.code == "SF260" and problem.span.line == 3 and says in problem.message
+
+
+def test_a_delay_of_a_period_makes_up_for_one_sample():
+    late = model('y = "C*(r - y)/s"', blocks='C = "K*z"', sampled='period = "0.5 s", delay = "0.5 s"')
+    assert [complex(root) for root in located_in_w(sampled_loop(late).tf, {}).poles] == [
+        pytest.approx(-1 / 3)
+    ]
