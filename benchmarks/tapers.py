@@ -70,12 +70,12 @@ X = { unit = "m" }
 y = "u(l/2)"
 """
 RISER_POINTS = 80
-"""Of collocation: layers of 7 m at both ends have five points."""
+"""Collocation points: layers of 7 m at both ends have five of them."""
 RISER_OVER_COLLOCATION = 5000.0
 """Most that certified poles of a riser, zeros and a count may take over one dense eigenvalue problem."""
 MODES = 5
 POINTS = 40
-"""Of collocation: the fifth frequency has 11 digits then."""
+"""Collocation points, with which the fifth frequency has 11 digits."""
 STEPS = 60
 """In the frequency's square root, between which the determinant's sign is compared."""
 HIGHEST = 90.0

@@ -146,8 +146,8 @@ def with_environment(
 ) -> Source:
     """Return a specification with an environment; errors in it are at places of this new text.
 
-    Of a letter in ``scales``, quantities, every positive value is meant: it is ``scale*share/(1 - share)``
-    with a share between 0 and 1, a parameter whose name :func:`share_name` returns.
+    A letter in ``scales`` stands for every positive value. It is ``scale*share/(1 - share)`` with a share
+    between 0 and 1, a parameter whose name :func:`share_name` returns; scales are quantities.
     """
     spec: dict[str, Any] = tomllib.loads(source.text, parse_float=Literal)
     parameters, definitions = {**spec.get("parameters", {})}, {**spec.get("definitions", {})}

@@ -3,7 +3,7 @@
 Input: a model, a port, and one parameter or two. Output: a :class:`PassiveValues`, or a :class:`PassiveChart`
 of such at many values of the second.
 
-Of a rational function whose coefficients are polynomials in the parameter, the number of sign changes of its
+If the coefficients of a rational function are polynomials in the parameter, the number of sign changes of its
 real part can only change where the polynomial of these signs has a double root, a root at 0 or at infinity,
 and the number of unstable poles only where one meets the axis. All such values are roots of resultants
 (Collins 1975); between two of them one value decides. Else values are tried and halved: where the impedance

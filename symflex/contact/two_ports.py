@@ -370,7 +370,7 @@ class _Conditions:
     def llewellyn(self) -> tuple[tuple[fmpz_mpoly, int], ...]:
         """What must not be negative: ``u = 4 Re Y11 Re Y22 - 2 Re(Y12 Y21)``, and ``u^2 - abs(2 Y12 Y21)^2``.
 
-        Of a reciprocal machine that is the determinant.
+        If the machine is reciprocal, that is the determinant.
         """
         if self.is_reciprocal:
             return (self.determinant,)

@@ -6,8 +6,8 @@ Example: ``G = [1/(s+1), 2/(s+3); 1/(s+1), 1/(s+1)]``. Candidates are s + 1 and 
 the equations with both outputs imposed. The determinant of A has s + 1 twice and s + 3 once, that of
 the system matrix has s - 1 once, and no feedback leaves any of them: poles at -1, -1, -3, a zero at 1.
 
-The candidates are exact. How often each divides the determinants of parts of the system matrix is told modulo
-a prime, and has to make up their degrees.
+The candidates are exact. Arithmetic modulo a prime shows how often each divides the determinants of parts of
+the system matrix; these numbers have to add up to the degrees.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What is known of poles and zeros of a transfer matrix, and how it is told: JSON, and text for a terminal.
+"""Poles and zeros of a transfer matrix as results: JSON, and text for a terminal.
 
 Input: roots, and the system matrix they were found with.
 Output: :class:`MatrixRoots`, a :class:`~symflex.roots.PoleZeroMap` with what only matrices have.

@@ -9,7 +9,7 @@ motions. ``[A B]`` and ``[A; C]`` are proved to have full rank there, so the mat
 
 A matrix that is not square, or not of full normal rank, has a zero where all its minors of the largest order
 have one. The zeros of one minor are found; where a sum of all of them is proved not to vanish there is none.
-Others are not excluded, which is said.
+Places where it may vanish are reported as not excluded.
 """
 
 from __future__ import annotations
@@ -209,7 +209,7 @@ class SearchedMatrix:
     def _apart(self, modes: PoleZeroMap) -> tuple[list[Root], list[DecouplingZero]]:
         """Return the poles of the matrix, and what inputs or outputs of it all miss.
 
-        Of several modes in one place one input and output together see one; all inputs may see the others.
+        One input and one output see one of several modes in one place; all inputs may see the others.
         """
         poles, apart = [*modes.poles], []
         for each in modes.hidden:

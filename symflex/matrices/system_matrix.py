@@ -41,7 +41,7 @@ from symflex.roots.networks.cramer import bordered
 from symflex.transfer.equations_at import EquationsAt
 
 Row = dict[int, acb]
-Of = TypeVar("Of")
+Value = TypeVar("Value")
 Draw = Callable[[int, int], nmod_mat]  # a matrix of random numbers, by rows and columns
 Weights = Sequence[Sequence[int]]  # by row, then by column
 ZERO, ONE = acb(0), acb(1)
@@ -206,7 +206,7 @@ def null_vectors(rows: Sequence[Mapping[int, acb]], most: int = MOST_FREE) -> li
     """Return balls about vectors that a square matrix takes to zero, as many as it may have where singular.
 
     Bordered by as many rows and columns at random, the matrix is regular; the vectors have given products
-    with these rows. ``None`` if more than ``most`` are needed. Of one vector, it is a null vector of every
+    with these rows. ``None`` if more than ``most`` are needed. A single one is a null vector of every
     singular matrix in the balls.
 
     >>> [vector] = null_vectors([{0: acb(1), 1: acb(2)}, {0: acb(2), 1: acb(4)}])
@@ -236,18 +236,18 @@ def null_vectors(rows: Sequence[Mapping[int, acb]], most: int = MOST_FREE) -> li
 
 
 @dataclass(frozen=True, slots=True)
-class ByPart(Generic[Of]):
+class ByPart(Generic[Value]):
     """What is known of each part: a polynomial whose roots are where it loses rank, or an order of a root."""
 
-    modes: Of  # of A
-    input_decoupling: Of  # of [A B]
-    output_decoupling: Of  # of [A; C]
-    hidden: Of  # of all minors that contain A: what no feedback moves
-    system: Of  # of those of the largest order: hidden modes and transmission zeros
-    invariant: Of  # of all minors of the largest order
+    modes: Value  # of A
+    input_decoupling: Value  # of [A B]
+    output_decoupling: Value  # of [A; C]
+    hidden: Value  # of all minors that contain A: what no feedback moves
+    system: Value  # of those of the largest order: hidden modes and transmission zeros
+    invariant: Value  # of all minors of the largest order
 
     @property
-    def each(self) -> tuple[Of, ...]:
+    def each(self) -> tuple[Value, ...]:
         """All of them, in order."""
         return (
             self.modes,

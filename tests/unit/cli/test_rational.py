@@ -71,7 +71,7 @@ def several(shell):
 
 
 def test_state_equations_have_a_proved_error_and_the_documented_keys(several):
-    # Of y/u nothing is left out; of 1/(s + 900) its static value 1/900 is kept, off by that far out.
+    # y/u is kept whole; 1/(s + 900) keeps its static value 1/900 only, and is off by that far out.
     done = several("rational", "sum.toml", "--matrix", "--modes", "2", "--json")
     assert done.code == 0 and done.json["error"]["least"] <= 1 / 900 <= done.json["error"]["most"] * 1.0001
     page = (ROOT / "docs" / "command-line.md").read_text(encoding="utf-8")
