@@ -93,7 +93,7 @@ def _two_ports(spec: Specification, given: PassivityOptions) -> int:
     """Print what is proved of two ports together."""
     from symflex.contact.two_ports import find_two_ports
 
-    if len(given.ports) > 2 or given.output:  # noqa: PLR2004
+    if len(given.ports) > 2 or given.output:  # noqa: PLR2004 (a pair)
         raise refused("--port is given once or twice; -o is for one port")
     found = find_two_ports(spec.load(), given.ports, given.digits)
     answer(given.as_json, found.to_json_dict, lambda: str(found))

@@ -202,7 +202,7 @@ def _plot_z_width(spec: Specification, given: PlotOptions) -> int:
     from symflex.figures import checked_font, draw_over, save
     from symflex.loops.chart import StabilityChart
 
-    if len(given.over) != 2:  # noqa: PLR2004
+    if len(given.over) != 2:  # noqa: PLR2004 (two axes)
         raise refused(f"{Z_WIDTH} is drawn over two parameters: --over K --over B")
     path = check_place(given.output or f"{Path(spec.path).stem}_{Z_WIDTH}.pdf", PICTURES)
     given = replace(given, font=(font := checked_font(given.font, path)))

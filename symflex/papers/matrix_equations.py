@@ -212,10 +212,11 @@ class _RowWriter:
         return Matrix(tuple(sums), self.equation.span)
 
     def _product(self, first: Value, second: Value) -> Value:
-        if isinstance(first, Matrix) and isinstance(second, Matrix):
-            return product_of_values(first, second, self.equation.span, self.refuse)
         if isinstance(first, Matrix):
-            return mapped(first, lambda entry: product_of((entry, second)))  # type: ignore[arg-type]
+            if isinstance(second, Matrix):
+                return product_of_values(first, second, self.equation.span, self.refuse)
+            factor = second
+            return mapped(first, lambda entry: product_of((entry, factor)))
         return mapped(second, lambda entry: product_of((first, entry)))
 
     def _derived(self, entry: Expression, order: int) -> Expression:

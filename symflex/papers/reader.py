@@ -163,7 +163,7 @@ class LatexReader(SymbolReader):
             self.refuse("a comma separates what should be one formula", "a decimal comma is {,}")
         if text == "!":
             self.refuse("a factorial is not read")
-        if text and ord(text[0]) < 32:  # noqa: PLR2004
+        if text and ord(text[0]) < 32:  # noqa: PLR2004 (a control character)
             self.refuse("a control character is not read")
         self.refuse(f"'{text[:40]}' is not read here")
 
@@ -455,7 +455,7 @@ class LatexReader(SymbolReader):
             index, self.at = int(digits), end + 1
         radicand = self.group_expression()
         span = self.span(start)
-        if index == 2:  # noqa: PLR2004
+        if index == 2:  # noqa: PLR2004 (a square root)
             return Call("sqrt", radicand, span=span)
         exponent = Quotient(Number(Fraction(1)), Number(Fraction(index)), span=span)
         return Power(radicand, exponent, span=span)

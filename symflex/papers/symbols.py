@@ -194,7 +194,7 @@ class SymbolReader:
                 digits += "."
             else:
                 break
-            if len(digits) > 200:  # noqa: PLR2004
+            if len(digits) > 200:  # noqa: PLR2004 (digits)
                 self.refuse("this number has more than 200 digits", at=start)
         if self.text == "," and self.ahead().isdigit():
             self.refuse("this comma may be a decimal comma or separate two numbers", "a decimal comma is {,}")
@@ -220,7 +220,7 @@ class SymbolReader:
         run = 0
         while self.ahead(run).isdigit() and (not run or not self.tokens[self.at + run].is_spaced):
             run += 1
-        return run == 3 and len(digits.split(".", maxsplit=1)[0]) <= 9  # noqa: PLR2004
+        return run == 3 and len(digits.split(".", maxsplit=1)[0]) <= 9  # noqa: PLR2004 (groups of thousands)
 
     def cut(self) -> list[tuple[PrintedSymbol, int, int, int]]:
         """Return the first symbol of letters side by side, in each way the names that are known allow."""
@@ -235,7 +235,7 @@ class SymbolReader:
             singles.append((letter, i))
             i += 1
         one = self.one_symbol(1)
-        if len(singles) < 2:  # noqa: PLR2004
+        if len(singles) < 2:  # noqa: PLR2004 (a pair)
             return [one]
         known = self.notation.names
         options = {}
@@ -472,7 +472,7 @@ class SymbolReader:
     def is_index(texts: Sequence[str], letter: str) -> bool:
         """Tell whether a letter of a subscript is the index of a product: alone, or at its end."""
         letters = [t for t in texts if t != ","]
-        return len(letters) <= 2 or letters[-1] == letter or letters[0] == letter  # noqa: PLR2004
+        return len(letters) <= 2 or letters[-1] == letter or letters[0] == letter  # noqa: PLR2004 (a pair)
 
     def named(self, symbol: PrintedSymbol, span: Span, start: int) -> Expression:
         """Return what a symbol is: a name of the model, a number of an index, or its own name."""
@@ -490,7 +490,7 @@ class SymbolReader:
             self.refuse("a derivative is read in equations of motion only", at=start)
         name = symbol.name
         self.remember(name, start)
-        if len(name) > 64:  # noqa: PLR2004
+        if len(name) > 64:  # noqa: PLR2004 (letters shown)
             self.refuse("this symbol has more than 64 letters", at=start)
         return Name(name, span=span)
 
