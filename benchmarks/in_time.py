@@ -50,7 +50,8 @@ SHAFT_MODEL = """
 symflex = 1
 [parameters]
 G = "80 GPa"
-J_p = "pi*(0.02 m)^4/32"
+d = "20 mm"
+J_p = "pi*d^4/32"
 rho = "7800 kg/m^3"
 [elements]
 shaft  = { type = "shaft", between = ["a", "b"], G = "G", J = "J_p", rho = "rho", l = "1 m", eta = "2e-6 s" }
