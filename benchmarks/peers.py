@@ -124,7 +124,7 @@ def measure(extent: Extent) -> Measured:
     return Measured(found, claims)
 
 
-# ----------------------------------------------------------------------- ladders of R and C in letters
+# ----------------------------------------------------------------------- ladders of R and C in symbols
 
 LADDER_VALUES = """
 def letters(n):
@@ -721,7 +721,7 @@ def _arm() -> Task:
     ours = {"symflex, `derive`": ARM_SYMFLEX}
     theirs = {"SymPy `LagrangesMethod.linearize`, then `LUsolve`, not reduced": ("sympy", ARM_SYMPY)}
     return Task(
-        "two-link arm, linearised in letters", "q", "r", arm_values, 1e-9, ours, theirs, FLOORS["arm"]
+        "two-link arm, linearised in symbols", "q", "r", arm_values, 1e-9, ours, theirs, FLOORS["arm"]
     )
 
 

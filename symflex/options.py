@@ -129,9 +129,10 @@ class DeriveOptions:
     )
     as_json: bool = option(False, "--json", help="Same as --format json.")
     digits: int = option(6, "--digits", least=1, most=1000, **SHOWN, help="Digits of the form zpk.")
-    limits: bool = option(
-        False, "--limits", help="Print leading terms for s -> 0 and s -> infinity, in letters, instead."
+    symbolic: bool = option(
+        False, "--symbolic", "--letters", help="Print formulas in symbols, which is the default."
     )
+    limits: bool = option(False, "--limits", help="Print leading terms for s -> 0 and s -> infinity instead.")
     dimensionless: bool = option(
         False, "--dimensionless", help="Print functions in as few dimensionless groups as there are."
     )
@@ -157,7 +158,7 @@ class DeriveOptions:
     is_rga: bool = option(
         False,
         "--rga",
-        help="--matrix: print static gains, their inverse and relative gains at s = 0, in letters.",
+        help="--matrix: print static gains, their inverse and relative gains at s = 0.",
     )
 
 
@@ -248,10 +249,13 @@ class RootsOptions:
     explain: bool = option(
         False, "--explain", help="Say which constrained system has the zeros as its poles."
     )
-    letters: bool = option(
-        False, "--letters", help="Say in letters what roots are, and when they are real or imaginary."
+    symbolic: bool = option(
+        False,
+        "--symbolic",
+        "--letters",
+        help="Formulas of the roots, and when they are real or imaginary.",
     )
-    format: str = option("text", "--format", choices=("text", "latex"), **SHOWN, help="Format of --letters.")
+    format: str = option("text", "--format", choices=("text", "latex"), **SHOWN, help="Format of --symbolic.")
     sensitivity: Sequence[str] = option(
         (),
         "--sensitivity",
@@ -457,14 +461,17 @@ class StabilityOptions:
         "1 %", "--resolve", metavar="SHARE", **SHOWN, help="Share of a chart that may stay undecided."
     )
     peaks: bool = option(False, "--peaks", help="With beams or delays too: peaks of S and T, disk margin.")
-    letters: bool = option(
-        False, "--letters", help="Conditions in letters; with --over twice, their boundary as a curve."
+    symbolic: bool = option(
+        False,
+        "--symbolic",
+        "--letters",
+        help="Symbolic conditions; with --over twice, their boundary as a curve.",
     )
     of: str = option(
-        "poles", "--of", choices=("poles", "zeros"), **SHOWN, help="Whose conditions --letters prints."
+        "poles", "--of", choices=("poles", "zeros"), **SHOWN, help="Whose conditions --symbolic prints."
     )
     tf: str | None = option(None, "--tf", **ONE_TF)
-    format: str = option("text", "--format", choices=("text", "latex"), **SHOWN, help="Format of --letters.")
+    format: str = option("text", "--format", choices=("text", "latex"), **SHOWN, help="Format of --symbolic.")
     spread: Stated | None = option(None, "--spread", **SPREAD)
     as_json: bool = option(False, "--json", **JSON)
 
@@ -495,8 +502,8 @@ class ContactOptions:
         None,
         "--range",
         **TWO,
-        help='Only values between two: 0 "5 kN/m"; with several letters the name goes first.  [default: all '
-        "positive ones of the environment; else as for symflex stability]",
+        help='Only values between two: 0 "5 kN/m"; the name goes first if there are several.  [default: '
+        "all positive ones of the environment; else as for symflex stability]",
     )
     ranges: Sequence[tuple[str, Stated, Stated]] = option(
         (), "--range-of", nargs=3, multiple=True, hidden=True, metavar="P LO HI"
@@ -546,7 +553,7 @@ class PassivityOptions:
     ranges: Sequence[tuple[str, Stated, Stated]] = option(
         (), "--range-of", nargs=3, multiple=True, hidden=True, metavar="P LO HI"
     )
-    letters: bool = option(False, "--letters", help="Conditions in letters, of lumped models.")
+    symbolic: bool = option(False, "--symbolic", "--letters", help="Symbolic conditions, of lumped models.")
     digits: int = option(12, "--digits", least=1, most=100, **SHOWN, help="Correct significant digits.")
     output: str | None = file_option("Figure of the real part over frequency: FILE.pdf, .png, .svg.")
     as_json: bool = option(False, "--json", **JSON)

@@ -25,11 +25,11 @@ from symflex.api.root import (
 )
 from symflex.budget import Budget, entered_budget
 from symflex.errors import refused
-from symflex.letters.frequency_equation import roots_in_letters
 from symflex.options import POINTS, Ends, RootsOptions, band_ends, checked_digits, duration
 from symflex.print.sympy import symbols_of
 from symflex.roots.locate import locate
 from symflex.roots.region import region_of
+from symflex.symbolic.frequency_equation import symbolic_roots
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -304,8 +304,8 @@ class Analyses(Plotted):
         return symbolic or self.bound.source
 
     def _table(self, located: PoleZeroMap, listed: Sequence[roots_layer.Root]) -> RootTable:
-        letters = partial(roots_in_letters, self.bound.source, self.bound, located)
-        return RootTable(Root(root, letters, symbols_of(self.bound.source.model)) for root in listed)
+        factors = partial(symbolic_roots, self.bound.source, self.bound, located)
+        return RootTable(Root(root, factors, symbols_of(self.bound.source.model)) for root in listed)
 
     def _found(self, given: RootsOptions, budget: float | None) -> PoleZeroMap:
         """Return the map if the budget suffices: a tuple of roots could not say that it did not."""

@@ -54,13 +54,13 @@ if TYPE_CHECKING:
     from symflex.contact.passivity import PortPassivity
     from symflex.contact.two_ports import TwoPorts
     from symflex.figures import AxesGiven
-    from symflex.letters.routh import Conditions
     from symflex.loops import DynamicColocation
     from symflex.loops.chart import StabilityChart
     from symflex.loops.peak import Peak
     from symflex.loops.spread import SpreadStability
     from symflex.model import Setting
     from symflex.options import Ends
+    from symflex.symbolic.routh import Conditions
 
 Table = Mapping[str, object]
 
@@ -527,7 +527,7 @@ class Model:
         PortPassivity or TwoPorts or HybridPassivity
             ``passive`` (``None`` where it is not decided), ``active`` bands, ``least`` real part, ``repair``
             and ``example``; of two ports ``passive``, ``absolutely_stable``, and ``least`` eta; with a
-            sampled controller ``passive``, the ``condition`` in letters, and the ``needed`` damping.
+            sampled controller ``passive``, the ``condition`` in symbols, and the ``needed`` damping.
 
         Raises
         ------
@@ -738,8 +738,8 @@ class Model:
         >>> print(*model.conditions().conditions)
         T_1 + T_2 > K*T_1*T_2
         """
-        from symflex.letters.boundary import boundary  # for start-up time
-        from symflex.letters.routh import conditions  # for start-up time
+        from symflex.symbolic.boundary import boundary  # for start-up time
+        from symflex.symbolic.routh import conditions  # for start-up time
 
         with budget_of(None).entered():
             return boundary(self.resolved, over) if over else conditions(self.resolved, of, tf)
@@ -1175,7 +1175,7 @@ class Model:
         return self._export("js")
 
     def export_modelica(self) -> str:
-        """Return a Modelica model: state equations in letters."""
+        """Return a Modelica model: symbolic state equations."""
         return self._export("modelica")
 
     def export_latex(self) -> str:

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
     from symflex.analysis import rational as rational_layer
     from symflex.analysis import sensitivity as sensitivity_layer
-    from symflex.letters.roots import FactorInLetters, RootFormula
     from symflex.roots.root import RootDecimals
+    from symflex.symbolic.roots import RootFormula, SymbolicFactor
 
 
 SHOWN_DIGITS = 12
@@ -51,15 +51,18 @@ class Root:
     """
 
     certified_root: roots_layer.Root
-    _letters: Callable[[], tuple[FactorInLetters, ...]] | None = field(
-        default=None, repr=False, compare=False
-    )
+    _factors: Callable[[], tuple[SymbolicFactor, ...]] | None = field(default=None, repr=False, compare=False)
     _symbols: Mapping[str, sympy.Symbol] = field(default_factory=dict, repr=False, compare=False)
 
     @property
-    def letters(self) -> tuple[str, ...]:
-        """What the root is in letters, ``omega_p = sqrt(k/m)`` and the like, each proved; often nothing."""
+    def symbolic(self) -> tuple[str, ...]:
+        """Formulas of the root, ``omega_p = sqrt(k/m)`` and the like, each proved; often nothing."""
         return tuple(map(str, self._formulas))
+
+    @property
+    def letters(self) -> tuple[str, ...]:
+        """An earlier name of ``symbolic``."""
+        return self.symbolic
 
     @property
     def expressions(self) -> dict[str, sympy.Expr]:
@@ -70,7 +73,7 @@ class Root:
 
     @property
     def _formulas(self) -> Iterator[RootFormula]:
-        found = () if self._letters is None else self._letters()
+        found = () if self._factors is None else self._factors()
         formulas = (f for each in found for f in each.formulas)
         return (f for f in formulas if any(r is self.certified_root for r in f.roots))
 

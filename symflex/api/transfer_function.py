@@ -18,8 +18,6 @@ from symflex.api.state_space import StateSpace
 from symflex.api.toolboxes import Toolboxes, refuse_attribute
 from symflex.errors import counted, nearest, refused
 from symflex.expressions import Expression, Name
-from symflex.letters.groups import dimensionless_of
-from symflex.letters.limits import InLetters, limits_of
 from symflex.library.elements import LineElement
 from symflex.model import Model, with_numbers
 from symflex.model.loss_factors import check_causal
@@ -29,6 +27,8 @@ from symflex.print.json_format import derive_json
 from symflex.print.sympy import symbols_of, to_sympy
 from symflex.print.text import form_text
 from symflex.state_space import not_rational
+from symflex.symbolic.groups import dimensionless_of
+from symflex.symbolic.limits import SymbolicForm, limits_of
 from symflex.transfer import BoundNested, bind_nested
 from symflex.transfer.double_value import FIRST_BITS
 
@@ -246,7 +246,7 @@ class TransferFunction(_Derived):
         """
         return BoundTransferFunction(pipeline.bind(self.exact, values))
 
-    def limits(self) -> InLetters:
+    def limits(self) -> SymbolicForm:
         r"""Return the leading terms for s -> 0 and s -> infinity: what ``symflex derive --limits`` prints.
 
         Examples
@@ -259,7 +259,7 @@ class TransferFunction(_Derived):
         """
         return limits_of(self.exact)
 
-    def dimensionless(self) -> InLetters:
+    def dimensionless(self) -> SymbolicForm:
         r"""Return the function in dimensionless groups: what ``symflex derive --dimensionless`` prints.
 
         Examples
@@ -286,7 +286,7 @@ class TransferFunction(_Derived):
         >>> drag.transfer_function("V", "F").short().den
         b + m*s
         """
-        from symflex.letters.short import approximation  # imports the search of roots
+        from symflex.symbolic.short import approximation  # imports the search of roots
 
         return Form(*approximation(self.exact, DeriveOptions(short=bound, spread=spread)))
 
@@ -296,7 +296,7 @@ class TransferFunction(_Derived):
         At the driven point of a compliance it is the dynamic stiffness that is expanded. Raises UsageError:
         SF902 where wavenumbers do not vanish at s = 0.
         """
-        from symflex.letters.short import approximation
+        from symflex.symbolic.short import approximation
 
         return Form(*approximation(self.exact, DeriveOptions(order=power)))
 

@@ -68,6 +68,9 @@ MEANT = {  # what one command is called elsewhere, and what to write here
     **dict.fromkeys(("slider", "sliders", "interactive", "html"), "live SPEC"),
     **dict.fromkeys(("help", "commands"), "--help"),
 }
+SPELLINGS = {"init": "new"}
+"""Other names that commands answer to."""
+
 NO_CACHE = "--no-cache"
 GONE = "symflex no longer caches derivations on disk: leave this option out."
 """The hint for NO_CACHE and the command ``cache``, which earlier versions had."""
@@ -84,10 +87,11 @@ class LazyGroup(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Import and return a command."""
         del ctx
-        if cmd_name not in COMMANDS:
+        name = SPELLINGS.get(cmd_name, cmd_name)
+        if name not in COMMANDS:
             return None
-        module, _ = COMMANDS[cmd_name]
-        command: click.Command = getattr(import_module(f"symflex.cli.{module}"), cmd_name)
+        module, _ = COMMANDS[name]
+        command: click.Command = getattr(import_module(f"symflex.cli.{module}"), name)
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
@@ -102,7 +106,7 @@ class LazyGroup(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """Name the nearest command when there is none of that name."""
         name = args[0]
-        if name not in COMMANDS and not name.startswith("-"):
+        if name not in {*COMMANDS, *SPELLINGS} and not name.startswith("-"):
             from symflex.errors.diagnostic import nearest  # most commands go well
             from symflex.model.analysis import FIGURE_KINDS
 

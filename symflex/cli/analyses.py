@@ -52,14 +52,14 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     Every root is proved to lie within its radius, with its multiplicity, and the list is proved complete. A
     distributed system has infinitely many roots; by default, the lowest are shown.
 
-    --explain identifies the constrained system whose poles are the zeros. --letters adds natural frequencies
-    and damping ratios in letters, the conditions for real and imaginary roots, and frequency equations.
+    --explain identifies the constrained system whose poles are the zeros. --symbolic adds natural frequencies
+    and damping ratios as formulas, the conditions for real and imaginary roots, and frequency equations.
     --sensitivity adds the relative change of each natural frequency, and the change of each damping ratio,
     per relative change of a parameter. Put it after SPEC: it takes the next word as the name of a parameter.
     --spread adds rectangles that contain the poles and zeros for all combinations of values within a share.
 
     --matrix takes all outputs and inputs together: poles as of McMillan, transmission zeros, decoupling and
-    invariant zeros, the normal rank, and the directions of the zeros. With it, --letters adds the
+    invariant zeros, the normal rank, and the directions of the zeros. With it, --symbolic adds the
     Smith-McMillan form.
 
     Exit code 4: some roots could not be separated, or their number could not be proved. Exit code 5: the
@@ -94,12 +94,12 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     }
     width, is_over = terminal_width(), located.certificate.is_exceeded
     try:
-        if given.letters:
-            from symflex.letters.frequency_equation import roots_in_letters
-            from symflex.letters.roots import letters_latex, letters_text
+        if given.symbolic:
+            from symflex.symbolic.frequency_equation import symbolic_roots
+            from symflex.symbolic.roots import symbolic_latex, symbolic_text
 
-            found = roots_in_letters(pipeline.derive_as(model, [pair])[0][0], bound, located)
-            said = letters_latex(found, model) if given.format == "latex" else letters_text(found, width)
+            found = symbolic_roots(pipeline.derive_as(model, [pair])[0][0], bound, located)
+            said = symbolic_latex(found, model) if given.format == "latex" else symbolic_text(found, width)
             more["letters"] = [each.to_json_dict(shown) for each in found], said
         if given.sensitivity:
             from symflex.analysis.sensitivity.sensitivity import sensitivities
@@ -149,8 +149,8 @@ def _sampled_roots(model: Model, given: RootsOptions) -> int:
 
 def _check_roots(given: RootsOptions) -> None:
     """Refuse options of ``roots`` that do not go together."""
-    if given.format != "text" and not given.letters:
-        raise refused("--format is for --letters")
+    if given.format != "text" and not given.symbolic:
+        raise refused("--format is for --symbolic")
     if (given.inputs or given.outputs) and not given.is_matrix:
         raise refused("--in and --out are for --matrix")
     of_pairs = given.tf or given.explain or given.sensitivity or given.spread is not None
@@ -173,7 +173,7 @@ def _matrix_roots(spec: Specification, given: RootsOptions, chosen: Region | Non
     with ProgressBar() as bar, entered_budget().reporting_to(bar).entered():
         found = locate_matrix(model, outputs, inputs, chosen, asked or 15)
     entries: list[str] = []
-    if given.letters:
+    if given.symbolic:
         from symflex.matrices.smith_mcmillan import in_expressions, smith_mcmillan
 
         matrix = derive_matrix(model, outputs, inputs, "expanded")
@@ -181,11 +181,11 @@ def _matrix_roots(spec: Specification, given: RootsOptions, chosen: Region | Non
 
     def text() -> str:
         shown = matrix_roots_text(found, asked or SHORT_DIGITS, terminal_width())
-        title = "\n\n  Smith-McMillan form, up to factors without s" if given.letters else ""
+        title = "\n\n  Smith-McMillan form, up to factors without s" if given.symbolic else ""
         return shown + title + "".join(f"\n    {entry}" for entry in entries)
 
     def data() -> dict[str, object]:
-        more = {"smith_mcmillan": entries} if given.letters else {}
+        more = {"smith_mcmillan": entries} if given.symbolic else {}
         return {**found.to_json_dict(), **more}
 
     answer(given.as_json, data, text)
@@ -263,7 +263,7 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
     --spread checks whether SPEC is stable for every combination of its values, each off by up to a share; or
     prints a combination for which it is proved not to be. Put it after SPEC, with or without a share.
 
-    --letters prints inequalities in the parameters that hold exactly where all poles, or with --of zeros all
+    --symbolic prints inequalities in the parameters that hold exactly where all poles, or with --of zeros all
     zeros of a transfer function, lie in the left half-plane; with --over twice, the boundary as a curve.
 
     Exit code 4: something is not certified, as the output lists. Undamped structures have poles all
@@ -274,12 +274,12 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
     from symflex.loops.spread import stability_spread
 
     model = spec.load()
-    if given.gain and (given.over or given.letters):
-        other = "--letters" if given.letters else "--over"
+    if given.gain and (given.over or given.symbolic):
+        other = "--symbolic" if given.symbolic else "--over"
         raise refused(f"give only one of --gain and {other}")
-    if given.letters:
-        from symflex.letters.boundary import boundary
-        from symflex.letters.routh import conditions
+    if given.symbolic:
+        from symflex.symbolic.boundary import boundary
+        from symflex.symbolic.routh import conditions
 
         tf = "/".join(first_pair(model, given.tf, "showing zeros of")) if given.of == "zeros" else None
         with entered_budget().entered():
@@ -287,7 +287,7 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
         answer(given.as_json, shown.to_json_dict, shown.latex if given.format == "latex" else shown.__str__)
         return 0
     if given.of != "poles" or given.tf or given.format != "text":
-        raise refused("--of, --tf and --format are for --letters")
+        raise refused("--of, --tf and --format are for --symbolic")
     stable: StabilityMap | StabilityChart | SpreadStability
     with ProgressBar() as bar, entered_budget().reporting_to(bar).entered():
         if given.spread is not None:

@@ -187,7 +187,7 @@ def derive(spec: Specification, given: DeriveOptions) -> int:
         for sentence in sentences:
             note(sentence)
     else:
-        from symflex.letters.short import approximation
+        from symflex.symbolic.short import approximation
 
         derived, forms = zip(*(approximation(tf, given) for tf in derived), strict=True)
     is_json = given.as_json or given.format == "json"
@@ -300,8 +300,8 @@ def _solved_json(model: Model) -> dict[str, object]:
 def _read_off(spec: Specification, given: DeriveOptions) -> int:
     """Print what can be read off formulas in place of them."""
     from symflex import pipeline
-    from symflex.letters.groups import dimensionless_of
-    from symflex.letters.limits import limits_of
+    from symflex.symbolic.groups import dimensionless_of
+    from symflex.symbolic.limits import limits_of
 
     if given.form or given.width or given.representation != "auto" or (given.limits and given.dimensionless):
         raise refused("--limits and --dimensionless exclude each other, --form, --width and --representation")

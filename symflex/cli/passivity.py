@@ -30,8 +30,8 @@ def passivity(spec: Specification, given: PassivityOptions) -> int:
     twice, at many values of the second. With waves or delays values are tried and halved, which proves what
     lies between them if the impedance or admittance is a straight line in the parameter.
 
-    --letters prints when the real part is positive at all frequencies, and when the poles lie in the left
-    half-plane, in letters. Passive is then what is at a bound, too.
+    --symbolic prints when the real part is positive at all frequencies, and when the poles lie in the left
+    half-plane, in symbols. Passive is then what is at a bound, too.
 
     --port names a port of [ports], or a node. -o draws the real part over frequency, active bands shaded.
 
@@ -39,15 +39,15 @@ def passivity(spec: Specification, given: PassivityOptions) -> int:
     """
     from symflex.contact.passivity import driving_function, find_passivity
 
-    if given.letters and (given.over or len(given.ports) > 1):
+    if given.symbolic and (given.over or len(given.ports) > 1):
         other = "--over" if given.over else "two ports"
-        raise refused(f"--letters is not available with {other}", "ask for each alone")
+        raise refused(f"--symbolic is not available with {other}", "ask for each alone")
     if len(given.ports) > 1 and not given.over:
         return _two_ports(spec, given)
     port = next(iter(given.ports), None)
     place = check_place(given.output, PICTURES) if given.output else None
     model = spec.load()
-    if given.letters:
+    if given.symbolic:
         return _in_letters(model, port, given)
     if given.over:
         from symflex.contact.over import passive_over
@@ -72,12 +72,12 @@ def passivity(spec: Specification, given: PassivityOptions) -> int:
 
 
 def _in_letters(model: Model, name: str | None, given: PassivityOptions) -> int:
-    """Print when the real part at a port is positive, and when the poles lie on the left, in letters."""
+    """Print when the real part at a port is positive, and when the poles lie on the left, in symbols."""
     from symflex import pipeline
     from symflex.contact.port import at_port
-    from symflex.letters.real_part import real_part_conditions
-    from symflex.letters.routh import conditions
     from symflex.model.ports import port_named
+    from symflex.symbolic.real_part import real_part_conditions
+    from symflex.symbolic.routh import conditions
 
     driven, pair = at_port(model, port_named(model, name))
     found = [real_part_conditions(pipeline.derive_all(driven, [pair])[0]), conditions(driven)]

@@ -1,4 +1,4 @@
-"""Modelica models: state equations with names, units and descriptions, in letters.
+"""Modelica models: state equations with names, units and descriptions, in symbols.
 
 Input: the transfer functions of a model of finitely many states, and delays. Output: one model::
 
@@ -51,7 +51,7 @@ class ModelicaExporter:
     """State equations as a Modelica model."""
 
     suffix = ".mo"
-    summary = "Modelica model: state equations in letters, states named"
+    summary = "Modelica model: symbolic state equations, states named"
     solves = False
 
     def export(

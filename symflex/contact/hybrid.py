@@ -66,7 +66,7 @@ class HybridPassivity(Printed):
     damping: Fraction  # of the machine
     needed: arb | None  # damping from which on it is passive, if stable alone; None where none is enough
     omega: arb | None  # where that much is needed [rad/s]
-    condition: str  # in letters; empty where its ends do not say all
+    condition: str  # in symbols; empty where its ends do not say all
     excess: int | None  # the sign of what the damping is beyond what is needed; None where it is not known
     alone: SampledPoles  # the poles of the machine alone
 
@@ -141,11 +141,11 @@ def find_hybrid(model: Model, port: str | None) -> HybridPassivity:
     if len(loop.channels) > 1:
         raise _other("several places take samples")
     driven, pair = at_port(loop.model, chosen)
-    exact = _DampingNeeded.of(driven, loop, pair, has_letters=False)
+    exact = _DampingNeeded.of(driven, loop, pair, is_symbolic=False)
     needed, cosine = exact.largest
     with precision(128):
         omega = None if cosine is None else cosine.acos() / ball(exact.rational(exact.period))
-    condition = _DampingNeeded.of(driven, loop, pair, has_letters=True).in_letters
+    condition = _DampingNeeded.of(driven, loop, pair, is_symbolic=True).symbolic
     damping, alone = exact.rational(exact.damping), sampled_poles(model)
     return HybridPassivity(chosen.name, damping, needed, omega, condition, exact.excess, alone)
 
@@ -165,7 +165,7 @@ class _DampingNeeded:
 
     @classmethod
     def of(
-        cls, driven: Model, loop: OpenedLoop, pair: tuple[str, str], *, has_letters: bool
+        cls, driven: Model, loop: OpenedLoop, pair: tuple[str, str], *, is_symbolic: bool
     ) -> _DampingNeeded:
         """Return it from the machine and the controller, with letters or with numbers."""
         (channel,) = loop.channels
@@ -183,7 +183,7 @@ class _DampingNeeded:
         )
         velocity, force = pair
         pairs = [pair, (velocity, channel.held), (channel.seen, force), *((n, UNIT) for n in times)]
-        derived = derive_all(model if has_letters else with_numbers(model), pairs)
+        derived = derive_all(model if is_symbolic else with_numbers(model), pairs)
         ratios = [tf.ratio for tf in derived]
         ring = ratios[0].ring
         if not all(r.ring == ring for r in ratios) or any(tf.kernels for tf in derived):
@@ -253,8 +253,8 @@ class _DampingNeeded:
         return None if None in signs else min(sign for sign in signs if sign is not None)
 
     @property
-    def in_letters(self) -> str:
-        """The condition in letters, where what is needed is a straight line in the cosine."""
+    def symbolic(self) -> str:
+        """The condition in symbols, where what is needed is a straight line in the cosine."""
         ring = self.needed.ring
         above, below = _split(self.needed)
         if _degree(ring, below) or _degree(ring, above) > 1:

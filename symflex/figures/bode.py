@@ -164,7 +164,7 @@ def draw_response(response: SampledResponse, ax: AxesGiven | None = None) -> Fig
 
 def _draw_asymptotes(axes: Axes, bound: AnyBoundFunction, ends: npt.NDArray[np.float64], colour: str) -> None:
     """Draw the powers of s that a function comes close to, as straight lines between two frequencies."""
-    from symflex.letters.limits import limits_of  # few figures have them
+    from symflex.symbolic.limits import limits_of  # few figures have them
 
     for row in limits_of(bound.source).rows:
         if row.value and row.power is not None:

@@ -30,7 +30,6 @@ from symflex.codegen.program.evaluate import nearest_double
 from symflex.drawing import LARGEST_DRAWING, drawing_of, render_drawing
 from symflex.errors import SymflexError
 from symflex.figures.files import inline_svg
-from symflex.letters.routh import Signs
 from symflex.live.tape import FIXED, MODES, tape_of
 from symflex.model import Model, ModelParameter
 from symflex.model.spec import TableValue, parse
@@ -40,6 +39,7 @@ from symflex.print.latex import model_labels
 from symflex.print.mathml import label_mathml, math_element, transfer_function_mathml
 from symflex.roots import Everything, Modes, PoleZeroMap, Progress, Root
 from symflex.roots.pole_zero_map import chosen, right_beyond
+from symflex.symbolic.routh import Signs
 
 SCRIPTS: Final = ("discs.js", "roots.js", "page.js")  # files of the script, in their order
 FACTOR: Final = 10

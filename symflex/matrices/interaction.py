@@ -1,6 +1,6 @@
 """How inputs and outputs of a square matrix interact: static gains, static decoupling, relative gains.
 
-Input: a transfer matrix. Output: its values at rest and their inverse, in letters; its relative gain array.
+Input: a transfer matrix. Output: its values at rest and their inverse, in symbols; its relative gain array.
 
 The relative gain of output i and input j is the gain from one to the other with all other inputs at zero,
 over that with all other outputs imposed as zero (Bristol 1966):
@@ -90,7 +90,7 @@ def interaction(matrix: TransferMatrix) -> Interaction:
 def _product(g: object, h: object) -> TransferFunction:
     """Return the product of two functions in lowest terms."""
     if not (isinstance(g, TransferFunction) and isinstance(h, TransferFunction)):
-        message = "relative gains in letters need functions in expanded form"
+        message = "symbolic relative gains need functions in expanded form"
         raise ModelError(Diagnostic("SF910", message, None, "values of rga(s) need none"))
     kernels = one_table([g.kernels, h.kernels])
     if kernels is None:
@@ -116,7 +116,7 @@ def _at_rest(pairs: Sequence[Sequence[object]]) -> Gains | None:
         values: list[TransferFunction] = []
         for tf in row:
             if not isinstance(tf, TransferFunction):
-                message = "static gains in letters need functions in expanded form"
+                message = "symbolic static gains need functions in expanded form"
                 raise ModelError(Diagnostic("SF910", message, None, "dcgain() has values"))
             value = value_at_rest(tf)
             if value is None:
@@ -127,9 +127,9 @@ def _at_rest(pairs: Sequence[Sequence[object]]) -> Gains | None:
 
 
 def _check_letters(tf: AnyTransferFunction) -> None:
-    """Return where a function has a static gain in letters, which beams and roots of s have not."""
+    """Return where a function has a symbolic static gain, which beams and roots of s have not."""
     if tf.model.root is not None or any(k.function != EXPONENTIAL for k in tf.kernels.kernels):
-        message = f"the static gain of {tf.name} in letters is not available here: it is no rational function"
+        message = f"the symbolic static gain of {tf.name} is not available here: it is no rational function"
         raise ModelError(Diagnostic("SF910", message, None, "dcgain() has its value, --limits its letters"))
 
 
@@ -147,7 +147,7 @@ def value_at_rest(tf: TransferFunction) -> TransferFunction | None:
     for factor, exponent in tf.ratio.factors:
         image = factor.compose(*images) if delays else factor
         if image.is_zero():
-            message = f"the static gain of {tf.name} in letters is not available here: it is 0/0 with delays"
+            message = f"the symbolic static gain of {tf.name} is not available here: it is 0/0 with delays"
             raise ModelError(Diagnostic("SF910", message, None, "dcgain() has its value"))
         ratio = ratio * Factored.polynomial(ring, image) ** exponent
     order = ratio.exponent_of(ring.generator(LAPLACE))

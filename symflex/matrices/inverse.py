@@ -125,7 +125,7 @@ def determinant(matrix: TransferMatrix) -> TransferFunction:
     pivots = [tf for tf in found.pivots if isinstance(tf, TransferFunction)]
     if len(pivots) < len(found.pivots):
         hint = "numpy.linalg.det of its values has numbers"
-        raise BudgetError(Diagnostic("SF502", "a nested matrix has no determinant in letters", None, hint))
+        raise BudgetError(Diagnostic("SF502", "a nested matrix has no symbolic determinant", None, hint))
     like = pivots[0] if pivots else next(tf for tf in matrix.each if isinstance(tf, TransferFunction))
     kernels = one_table([tf.kernels for tf in pivots])
     if kernels is None:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Literal
 from symflex.budget import spend
 from symflex.errors import BudgetError
 from symflex.expressions import Expression, negative, sum_of
-from symflex.letters.routh import conditions_of, is_passive
+from symflex.symbolic.routh import conditions_of, is_passive
 from symflex.transfer import TransferFunction
 
 if TYPE_CHECKING:

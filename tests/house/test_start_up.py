@@ -68,7 +68,7 @@ def test_a_drawing_needs_a_style_and_no_roots(tmp_path):
 @pytest.mark.slow
 def test_a_bode_plot_needs_no_loops_no_letters_and_no_file_but_its_own(tmp_path):
     found = modules_after("plot", LUMPED, "bode", "-o", str(tmp_path / "bode.svg"))
-    others = {"symflex.loops", "symflex.letters", "symflex.figures.pgf", "matplotlib.backends.backend_pgf"}
+    others = {"symflex.loops", "symflex.symbolic", "symflex.figures.pgf", "matplotlib.backends.backend_pgf"}
     assert not found & others
 
 

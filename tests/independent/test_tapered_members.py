@@ -309,7 +309,7 @@ SLIGHT = "1e-15"
 
 @cache
 def slight_taper():
-    # In letters: with the declared slope of 0 the beam would be uniform before anything is derived.
+    # In symbols: with the declared slope of 0 the beam would be uniform before anything is derived.
     model = pipeline.loads(SLOPE % 'I = "2.13e-7*l^4*(1 - c*x/l)^3", A = "1.6e-3*l^2*(1 - c*x/l)"')
     return pipeline.derive_all(model)[0]
 

@@ -21,8 +21,8 @@ from functools import cached_property, partial
 from flint import arb, fmpz_mpoly
 
 from symflex.algebra import LAPLACE, NO_KERNELS, Factored, Ring, degree_in
-from symflex.analysis.sampled_loop.in_letters import BACK, Ends, Fixed, Timing, pulse_of, pulse_over
 from symflex.analysis.sampled_loop.pulse import pulse_function
+from symflex.analysis.sampled_loop.symbolic import BACK, Ends, Fixed, Timing, pulse_of, pulse_over
 from symflex.analysis.time_response.delayed_terms import delayed_quotient
 from symflex.balls import ball, precision
 from symflex.errors import Diagnostic, ModelError

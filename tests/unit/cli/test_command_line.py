@@ -10,7 +10,7 @@ import sys
 import pytest
 
 from symflex import __version__
-from symflex.cli import COMMANDS
+from symflex.cli import COMMANDS, run
 from symflex.cli.reporting import listed
 from symflex.errors import BudgetError, Diagnostic
 from symflex.library.elements import ELEMENTS
@@ -202,3 +202,20 @@ def test_a_command_by_another_name_is_told_its_own(arguments, said, shell):
     done = shell(*arguments)
     assert done.code == 2
     assert said in done.err
+
+
+@pytest.mark.parametrize(
+    ("words", "spelling"),
+    [
+        (("roots", "SPEC", "--symbolic"), ("roots", "SPEC", "--letters")),
+        (("stability", "SPEC", "--symbolic"), ("stability", "SPEC", "--letters")),
+        (("derive", "SPEC"), ("derive", "SPEC", "--symbolic")),
+        (("new", "--help"), ("init", "--help")),
+    ],
+)
+def test_earlier_and_common_spellings_do_the_same(words, spelling, capsys):
+    printed = []
+    for said in (words, spelling):
+        run([str(TWO_MASS) if word == "SPEC" else word for word in said])
+        printed.append(capsys.readouterr().out.replace("symflex init", "symflex new"))
+    assert printed[0] == printed[1] != ""

@@ -40,5 +40,5 @@ def test_an_unknown_port_is_refused_with_the_nearest(wall, capsys):
 
 @pytest.mark.parametrize("other", [["--over", "K"], ["--port", "tip", "--port", "x"]])
 def test_letters_go_with_one_port_and_no_over(wall, capsys, other):
-    assert run(["passivity", "wall.toml", "--letters", *other]) == 2
+    assert run(["passivity", "wall.toml", "--symbolic", *other]) == 2
     assert "SF902" in capsys.readouterr().err

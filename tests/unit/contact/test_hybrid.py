@@ -43,7 +43,7 @@ def needed(h, period=1e-3):
     return (period / 2 * ((1 - 1 / z) * h(z)).real / (1 - np.cos(omega_t))).max()
 
 
-def test_the_condition_of_a_wall_comes_out_in_letters():
+def test_the_condition_of_a_wall_comes_out_in_symbols():
     assert found().condition == "b > K*T/2 + |B|"
 
 

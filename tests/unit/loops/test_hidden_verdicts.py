@@ -17,7 +17,6 @@ import symflex
 from symflex import pipeline
 from symflex.codegen.javascript import JAVASCRIPT, RESERVED
 from symflex.figures.loops import verdict_of_closed
-from symflex.letters.routh import conditions
 from symflex.live import page
 from symflex.loops import of_model
 from symflex.loops.chart import StabilityChart
@@ -27,6 +26,7 @@ from symflex.model import Model
 from symflex.options import StabilityOptions
 from symflex.roots import Modes
 from symflex.sweep.points import VERDICTS
+from symflex.symbolic.routh import conditions
 
 LAMBERT = float(mpmath.lambertw(mpmath.exp(0.5)) / 0.5 - 1)  # s + 1 = 2 exp(-s/2)
 
@@ -41,7 +41,7 @@ class Case:
     hidden: Callable[[complex], complex]  # vanishes at a pole that is hidden with ``bad``
     pole: complex  # where that is, in the right half-plane
     unit: str = ""
-    is_lumped: bool = True  # there are conditions in letters
+    is_lumped: bool = True  # there are symbolic conditions
     is_followed: bool = True  # over any parameter, as not with roots of s
 
     def written(self, value: str) -> str:
@@ -253,7 +253,7 @@ def test_a_hidden_factor_that_waits_has_poles_without_end() -> None:
 
 
 @pytest.mark.parametrize("name", [n for n, case in CASES.items() if case.is_lumped])
-def test_conditions_in_letters_hold_for_the_twin_alone(name: str) -> None:
+def test_symbolic_conditions_hold_for_the_twin_alone(name: str) -> None:
     case = CASES[name]
     (condition,) = conditions(case.model(case.bad)).conditions
     left, sign, right = str(condition).split()

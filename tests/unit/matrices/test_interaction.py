@@ -79,7 +79,7 @@ def test_json_has_letters_and_numbers() -> None:
     assert np.allclose(document["relative_gains"]["values"], [[5 / 3, -2 / 3], [-2 / 3, 5 / 3]])
 
 
-def test_beams_have_no_gains_in_letters() -> None:
+def test_beams_have_no_symbolic_gains() -> None:
     text = BEAM.replace("F = {}", "F = {}\nM = {}").replace("\"w''(l) = 0\"", "\"EI*w''(l) = M\"")
     with pytest.raises(ModelError, match="SF910"):
         interaction(derive_matrix(model_of(text)))

@@ -12,8 +12,8 @@ import pytest
 from symflex import loads as load
 from symflex.cli import run
 from symflex.errors import ModelError, SpecError
-from symflex.letters.routh import conditions
 from symflex.pipeline import loads
+from symflex.symbolic.routh import conditions
 
 ACTUATOR = {  # k x = eps A V^2/(2 (d - x)^2), in three spellings
     "charge": (
@@ -260,7 +260,7 @@ def test_a_square_that_is_solved_for_is_not_followed_to_where_it_is_negative():
     with pytest.raises(SpecError, match="has no value at the operating point") as refused:
         loads(text.replace("F_0 = 0.2", "F_0 = 0.6"))
     assert refused.value.diagnostics[0].hint == "correct the values of parameters"
-    # In letters the poles are on the axis for F > m g, where i_0 is imaginary: the condition says that.
+    # In symbols the poles are on the axis for F > m g, where i_0 is imaginary: the condition says that.
     assert str(conditions(loads(text))).endswith("where i_0 = sqrt(-(-m*g + F_0)*x_0^2/C) is real")
 
 

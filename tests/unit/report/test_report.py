@@ -93,7 +93,7 @@ def test_a_report_of_several_models_is_folded_behind_its_overview(small):
     # A folded chapter says what is in it.
     (small_model,) = re.findall("<summary>(Parameters.*poles and zeros.*)</summary>", many)
     assert small_model == (
-        "Parameters, transfer functions, figures, poles and zeros, in letters, "
+        "Parameters, transfer functions, figures, poles and zeros, symbolic answers, "
         "dynamic colocation, code and data"
     )
     printed = many.partition("@media print")[2].partition("</style>")[0]

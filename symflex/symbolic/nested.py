@@ -22,11 +22,11 @@ from symflex.algebra import LAPLACE, Factored, Ring
 from symflex.balls import ball
 from symflex.equations.equations import ConstantFunction
 from symflex.errors import ModelError
-from symflex.letters.distance import upper
 from symflex.model.linearity import factored_of, integer_exponent
 from symflex.print.forms.notation import reachable
 from symflex.print.forms.printed import PrintedForm, S
 from symflex.print.forms.shapes import of_powers, plain, powers_of, rebuilt
+from symflex.symbolic.distance import upper
 from symflex.transfer.enclose import enclose
 
 NUM, DEN = "", "/"

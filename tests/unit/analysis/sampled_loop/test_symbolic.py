@@ -32,7 +32,7 @@ outputs    = {{ Y = "y" }}
 
 @pytest.mark.parametrize("plant", PLANTS)
 @pytest.mark.parametrize("delay", ["0", "0.3*T", "T", "0.02 s"])
-def test_the_characteristic_function_is_the_same_in_letters(plant, delay):
+def test_the_characteristic_function_is_the_same_in_symbols(plant, delay):
     s = 0.7 + 3j
     numbers = bind(loop(plant, delay).tf)(s)
     letters = bind(loop(plant, delay, {"T": (Fraction(9, 100), Fraction(11, 100))}).tf, {"T": "0.1"})(s)

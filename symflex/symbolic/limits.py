@@ -1,4 +1,4 @@
-"""What a transfer function is for s -> 0 and for s -> infinity, in letters.
+"""What a transfer function is for s -> 0 and for s -> infinity, in symbols.
 
 Input: a transfer function in expanded form.
 Output: its leading term at both ends, in words and with its value, and the frequency at which both meet.
@@ -34,7 +34,6 @@ from symflex.balls import ball, precision
 from symflex.errors import Diagnostic, SymflexError, UsageError
 from symflex.expressions import Expression, Name, Number, format_expression, number, product_of
 from symflex.expressions.derivative import simplified
-from symflex.letters.routh import aligned, read
 from symflex.print.forms import print_form
 from symflex.print.forms.notation import reachable
 from symflex.print.forms.printed import S
@@ -44,6 +43,7 @@ from symflex.print.latex.equation import model_labels, ratio_latex
 from symflex.print.latex.expression import Writer
 from symflex.print.text import WIDTH, broken, hanging
 from symflex.quantities import Dimension, unit_of
+from symflex.symbolic.routh import aligned, read
 from symflex.transfer import AnyTransferFunction
 from symflex.transfer.enclose import enclosure
 from symflex.transfer.lowest_terms import cancel
@@ -74,8 +74,8 @@ STATIC: Final = {0: "static gain", -1: "integrator", -2: "double integrator", 1:
 RIGHT: Final = "s -> infinity on the positive axis; on s = j*omega only with damping"
 
 
-class NotInLettersError(UsageError):
-    """A statement in letters is not had; the argument says why."""
+class NotSymbolicError(UsageError):
+    """A statement in symbols is not had; the argument says why."""
 
     def __init__(self, reason: str) -> None:
         super().__init__(Diagnostic("SF902", reason))
@@ -102,7 +102,7 @@ class Row(NamedTuple):
 
 
 @dataclass(frozen=True)
-class InLetters:
+class SymbolicForm:
     """What is read off a formula: lines, and what is said below them."""
 
     tf: AnyTransferFunction
@@ -157,7 +157,7 @@ class InLetters:
         return {"tf": self.tf.name, "lines": lines, "notes": list(self.notes)}
 
 
-def limits_of(tf: AnyTransferFunction) -> InLetters:
+def limits_of(tf: AnyTransferFunction) -> SymbolicForm:
     """Return the leading terms of a transfer function at both ends, and where they meet."""
     found: dict[str, tuple[Row, Powers]] = {}
     notes = []
@@ -165,7 +165,7 @@ def limits_of(tf: AnyTransferFunction) -> InLetters:
         try:
             found[end] = LimitFinder(tf, end).limit()
         except SymflexError as error:
-            notes.append(f"s -> {end}: no term in letters, {error.diagnostics[0].message}")
+            notes.append(f"s -> {end}: no symbolic term, {error.diagnostics[0].message}")
     rows = [row for row, _ in found.values()]
     slopes = [row.power for row in rows if row.power is not None]
     if len(slopes) == len(ENDS) and slopes[0] != slopes[1]:
@@ -178,7 +178,7 @@ def limits_of(tf: AnyTransferFunction) -> InLetters:
             rows.append(Row("both meet at", ":  ", r"\omega &=", corner, said, at, "rad/s"))
     if ENDS[1] in found and tf.kernels.wavenumbers:
         notes.append(RIGHT)
-    return InLetters(tf, tuple(rows), tuple(notes))
+    return SymbolicForm(tf, tuple(rows), tuple(notes))
 
 
 @dataclass(frozen=True)
@@ -198,7 +198,7 @@ class LimitFinder:
         """What powers of wavenumbers are, and which powers."""
         laws = self.tf.kernels.dispersions
         if any(law.kind in ("general", "varying") for law in laws) or (self.end != ENDS[0] and self._pairs):
-            raise NotInLettersError("its waves are not roots of one term")
+            raise NotSymbolicError("its waves are not roots of one term")
         named = ((n, law.kind, law.characteristic[0]) for law in laws for n in law.wavenumbers)
         by_kind = {"wave": (-1, 2), "bending": (Fraction(1, 4), 4), "pair": (1, 4)}
         return {name: (c * by_kind[kind][0], by_kind[kind][1]) for name, kind, c in named}
@@ -217,7 +217,7 @@ class LimitFinder:
         if min((*rates.values(), *delays), default=1) <= 0 or min(sums, default=0) < 0:
             at_rest = "vanish at s = 0, as under tension or on a foundation"
             where = at_rest if self.end == ENDS[0] else "grow with s"
-            raise NotInLettersError(f"it contains waves whose wavenumbers do not {where}")
+            raise NotSymbolicError(f"it contains waves whose wavenumbers do not {where}")
         return rates
 
     def _end(self, value: Factored, waves: Mapping[str, Fraction]) -> tuple[Factored, Fraction]:
@@ -241,9 +241,9 @@ class LimitFinder:
         """Return the leading term, checked, and what stands before the power of s."""
         tf = self.tf
         if not tf.is_reduced or tf.is_zero:
-            raise NotInLettersError("it is zero" if tf.is_reduced else "its formula is too long, and nested")
+            raise NotSymbolicError("it is zero" if tf.is_reduced else "its formula is too long, and nested")
         if any(p.is_imaginary for p in tf.model.parameters):
-            raise NotInLettersError("loss factors hold on s = j*omega alone")
+            raise NotSymbolicError("loss factors hold on s = j*omega alone")
         if self.end == ENDS[0] and self.laws and not any(self._end(x, {})[1] for x, _ in self.laws.values()):
             return self._where_waves_stay()
         value, power = Factored.number(self._ring, tf.ratio.unit), Fraction(0)
@@ -264,7 +264,7 @@ class LimitFinder:
         front, root = self._front(value), tf.model.root
         power /= 1 if root is None else root.order
         if root is not None and (growth or turns):
-            raise NotInLettersError("waves of a root of s are left in it")
+            raise NotSymbolicError("waves of a root of s are left in it")
         waves = {e.Call("exp", self._phase(growth)): Fraction(1)} if growth else {}
         leading = written_powers(front | turns | waves | {S: power})
         if root is not None:
@@ -273,7 +273,7 @@ class LimitFinder:
         name, mark = f"s -> {self.end}", "0" if self.end == ENDS[0] else r"\infty"
         amount = None if turns else value_of(tf, written_powers(front))
         if amount == 0:
-            raise NotInLettersError(f"{format_expression(leading)} is zero for the declared values")
+            raise NotSymbolicError(f"{format_expression(leading)} is zero for the declared values")
         unit = str(unit_of(tf.unit).dimension * Dimension(s=power)) if tf.unit and power else tf.unit
         shown_power = None if growth or turns else power
         slope = f"{20 * float(power):+.4g} dB/decade" if shown_power else ""
@@ -292,10 +292,10 @@ class LimitFinder:
             lines = {f"{name}_0": simplified(line, at_rest) for name, line in form.where if name in waves}
             value = simplified(e.quotient(form.num, form.den), at_rest)
         except ZeroDivisionError:
-            raise NotInLettersError("it has a pole at s = 0 beside waves") from None
+            raise NotSymbolicError("it has a pole at s = 0 beside waves") from None
         expanded = with_lines(value, lines)
         if len(lines) < len(form.where) or e.is_number(value, 0):
-            raise NotInLettersError("it has a zero at s = 0 beside waves")
+            raise NotSymbolicError("it has a zero at s = 0 beside waves")
         self._check(expanded)
         left_side, power = rf"{ratio_latex(self.tf)} &\overset{{s \to 0}}{{\sim}}", Fraction(0)
         row = Row("s -> 0", ":".ljust(len(ENDS[1]) + 1), left_side, value, self._words(power))
@@ -331,7 +331,7 @@ class LimitFinder:
             power = self._end(total, waves)[1]
             if not total.is_zero and power + count - 1 < slowest * (most + 1):
                 return total / composed_factor.denominator()
-        raise NotInLettersError("its power series at s = 0 is too long")
+        raise NotSymbolicError("its power series at s = 0 is too long")
 
     def _symmetric(
         self, law: Dispersion, terms: Mapping[Key, Factored], most: Fraction | float
@@ -365,7 +365,7 @@ class LimitFinder:
             room = most - rate * (key[i] + key[j])
             p, q, r = cut(u, room - 2 * rate), cut(v, room), cut(u * both + v * 2, room)
             if not (p.is_zero or r.is_zero):
-                raise NotInLettersError("its waves are not roots of one term")
+                raise NotSymbolicError("its waves are not roots of one term")
             symmetric[key] = q if p.is_zero else p * (one**2 - other**2) / 2
         return symmetric
 
@@ -390,7 +390,7 @@ class LimitFinder:
         columns = zip(growing, zip(*parts, strict=True), strict=True)
         top = [max(n) if k.wavenumber else min(n) for k, n in columns]
         if tuple(top) not in parts:
-            raise NotInLettersError("which of its exponentials is the largest depends on its parameters")
+            raise NotSymbolicError("which of its exponentials is the largest depends on its parameters")
         halves = sum(n for k, n in zip(growing, top, strict=True) if k.wavenumber)
         value, power = self._end(Factored.polynomial(ring, parts[tuple(top)]) / 2**halves, self._waves)
         others: dict[Any, int] = dict(zip(growing, top, strict=True))
@@ -402,7 +402,7 @@ class LimitFinder:
             terms = []
             for powers, part in parts.items():
                 if not (ratio := Factored.polynomial(ring, part) / value).is_constant:
-                    raise NotInLettersError("several oscillations lead together")
+                    raise NotSymbolicError("several oscillations lead together")
                 calls = [e.Call(k.function, self._phase({k: 1})) for k in turning]
                 turns = (e.power(call, n) for call, n in zip(calls, powers, strict=True))
                 terms.append(product_of([number(ratio.unit), *turns]))
@@ -417,7 +417,7 @@ class LimitFinder:
             value = value / Factored.generator(self._ring, name) ** n
             parts.append((self._powers(self._end(square, {})[0]), Fraction(n, order)))
             if value.depends_on(name):
-                raise NotInLettersError("several terms lead together")
+                raise NotSymbolicError("several terms lead together")
         value, _ = cancel(value.numerator(), value.denominator(), radicals=self.tf.radicals)
         return times((self._powers(value), Fraction(1)), *parts)
 
@@ -472,7 +472,7 @@ class LimitFinder:
                     errors.append(float(abs(setting.evaluate(None, BITS)(at) / printed - 1).upper()))
             is_waning = all(b < WANING * a or b < NOTHING for a, b in pairwise(errors))
             if not (is_waning and errors[-1] < CLOSE):
-                raise NotInLettersError(f"{format_expression(leading)} seems to lead; that is not proved")
+                raise NotSymbolicError(f"{format_expression(leading)} seems to lead; that is not proved")
 
 
 def definitions_of(tf: AnyTransferFunction) -> list[tuple[str, Expression]]:

@@ -1,4 +1,4 @@
-"""Natural frequencies, damping ratios and kinds of roots in letters, beside the certified roots.
+"""Natural frequencies, damping ratios and kinds of roots in symbols, beside the certified roots.
 
 Input: a transfer function with numbers whose formula has letters, and its certified roots.
 Output: for each irreducible factor, formulas and conditions, each read back and checked in balls.
@@ -24,7 +24,6 @@ from flint import acb, arb, fmpz_mpoly
 from symflex import expressions as e
 from symflex.algebra import LAPLACE, Factored, Ring, irreducible_factors
 from symflex.expressions import Call, Expression, Name, format_expression
-from symflex.letters.routh import Factor, Signs, SymbolicRelation, aligned, read, relation_of, without_minus
 from symflex.model import Model
 from symflex.print.forms.arrange import ProductPrinter, length, with_squares
 from symflex.print.forms.naming import Naming
@@ -35,6 +34,7 @@ from symflex.print.roots import SHORT_DIGITS
 from symflex.print.text import INDENT, WIDTH, broken
 from symflex.roots import Root, figure
 from symflex.roots.passivity import energy_proof
+from symflex.symbolic.routh import Factor, Signs, SymbolicRelation, aligned, read, relation_of, without_minus
 from symflex.transfer import TransferFunction
 from symflex.transfer.lowest_terms import cancel
 
@@ -49,7 +49,7 @@ MOST_TERMS: Final = 200  # terms of a factor that is read back; longer ones have
 
 @dataclass(frozen=True, slots=True)
 class RootFormula:
-    """What a name is in letters: ``omega_p = sqrt(k/m)``, proved of some roots."""
+    """What a name is in symbols: ``omega_p = sqrt(k/m)``, proved of some roots."""
 
     name: str
     expression: Expression
@@ -62,7 +62,7 @@ class RootFormula:
 
 
 @dataclass(frozen=True, slots=True)
-class FactorInLetters:
+class SymbolicFactor:
     """A factor of numerator or denominator with what is said of its roots."""
 
     kind: str  # ``poles``, ``zeros`` or ``hidden``
@@ -99,17 +99,17 @@ class FactorInLetters:
         }
 
 
-def letters_text(found: Sequence[FactorInLetters], width: int = WIDTH) -> str:
+def symbolic_text(found: Sequence[SymbolicFactor], width: int = WIDTH) -> str:
     """Return what is said of factors as lines for a terminal."""
     lines = []
     for each in found:
         zero = f" {format_expression(each.factor)} = 0" if each.factor else ""
-        head = f"{each.kind} in letters:{zero}".lstrip()
+        head = f"symbolic {each.kind}:{zero}".lstrip()
         lines += ["", INDENT + head, *(2 * INDENT + line for line in each.lines())]
     return "\n".join(part for line in lines for part in broken(line, width) or [""])
 
 
-def letters_latex(found: Sequence[FactorInLetters], model: Model) -> str:
+def symbolic_latex(found: Sequence[SymbolicFactor], model: Model) -> str:
     """Return what is said of factors as displays, reasons as comments."""
     labels, lines = model_labels(model), []
     for each in found:
@@ -121,13 +121,13 @@ def letters_latex(found: Sequence[FactorInLetters], model: Model) -> str:
         for text, _, shown in each.kinds:
             words, conditions = text.partition(IF)[0], r" \text{ and } ".join(x.latex(labels) for x in shown)
             rows.append(rf"&\text{{{words}{IF if shown else ''}}} {conditions}".rstrip())
-        lines += [f"% {each.kind} in letters", *([f"% {each.note}"] * bool(each.note)), *aligned(rows)]
+        lines += [f"% symbolic {each.kind}", *([f"% {each.note}"] * bool(each.note)), *aligned(rows)]
     return "\n".join(lines)
 
 
 @dataclass(frozen=True, eq=False)
 class LetterReader:
-    """Says in letters what the factors of one function have for roots, and reads what it says."""
+    """Says in symbols what the factors of one function have for roots, and reads what it says."""
 
     tf: TransferFunction
     numbers: Mapping[str, Callable[[], arb]]  # the values of names
@@ -145,14 +145,14 @@ class LetterReader:
         known = {"pi": acb.pi(), **more}
         return read(expression, lambda n: known[n] if n in known else acb(self.numbers[n]()))
 
-    def said_of(self, kind: str, factor: fmpz_mpoly, roots: Sequence[Root]) -> FactorInLetters | None:
+    def said_of(self, kind: str, factor: fmpz_mpoly, roots: Sequence[Root]) -> SymbolicFactor | None:
         """Return what is said of a factor; None if it contains no letters, or none of its roots is listed."""
         c = self.tf.ring.coefficients(factor)
         degree = len(c) - 1
         if not degree or not self.tf.ring.used_in([factor]) - {LAPLACE} or len(factor) == 1:
             return None
         printed = self.printer.arranger.collected(factor)
-        silent = FactorInLetters(kind, None, note=f"a factor of degree {degree} in s has no short formula")
+        silent = SymbolicFactor(kind, None, note=f"a factor of degree {degree} in s has no short formula")
         if len(factor) > MOST_TERMS:
             return silent
         of_factor = [r for r in roots if self.value(printed, s=r.enclosure()).contains(0)]
@@ -163,7 +163,7 @@ class LetterReader:
         ):
             return None
         formulas, kinds = tuple(self._formulas(c, of_factor)), tuple(self._kinds(kind, c))
-        return FactorInLetters(kind, printed, formulas, kinds) if formulas or kinds else silent
+        return SymbolicFactor(kind, printed, formulas, kinds) if formulas or kinds else silent
 
     def _formulas(self, c: Sequence[fmpz_mpoly], roots: Sequence[Root]) -> Iterator[RootFormula]:
         """Yield the formulas of a factor whose values are those of its roots."""
@@ -281,7 +281,7 @@ def _even_kinds(ring: Ring, c: Sequence[fmpz_mpoly]) -> Sequence[tuple[str, Sequ
     return tuple((alike | others).items())
 
 
-def numbered(found: Sequence[FactorInLetters], naming: Naming) -> Iterator[FactorInLetters]:
+def numbered(found: Sequence[SymbolicFactor], naming: Naming) -> Iterator[SymbolicFactor]:
     """Yield what is said with names that nothing else has: ``omega_p1`` is the lowest of several."""
     every = [(f"{f.name}_{each.kind[0]}", f) for each in found for f in each.formulas]
     every.sort(key=lambda item: float(item[1].roots[0].size().mid()))

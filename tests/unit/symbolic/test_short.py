@@ -10,10 +10,10 @@ import sympy
 from symflex import pipeline
 from symflex.api.transfer_function import Form
 from symflex.errors import UsageError
-from symflex.letters.short import approximation, shortened
 from symflex.options import DeriveOptions
 from symflex.print.forms import print_form
 from symflex.print.text import form_text
+from symflex.symbolic.short import approximation, shortened
 
 HEAD = "symflex = 1\ninputs.u = {}\n"
 

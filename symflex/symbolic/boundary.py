@@ -36,16 +36,6 @@ from symflex.expressions import (
     quotient,
     sum_of,
 )
-from symflex.letters.routh import (
-    BITS,
-    LONGEST,
-    POINTS,
-    Conditions,
-    Signs,
-    SymbolicRelation,
-    read,
-    relation_of,
-)
 from symflex.loops.loop import pick_gain
 from symflex.loops.over import seen_pair
 from symflex.model import ExactValue, Model
@@ -59,6 +49,16 @@ from symflex.print.forms.naming import Naming
 from symflex.print.forms.notation import Line, constant_symbols, plain_printer, reachable, wave_times_length
 from symflex.print.forms.shapes import SumSigns
 from symflex.roots.passivity import observed
+from symflex.symbolic.routh import (
+    BITS,
+    LONGEST,
+    POINTS,
+    Conditions,
+    Signs,
+    SymbolicRelation,
+    read,
+    relation_of,
+)
 from symflex.transfer import BoundTransferFunction, TransferFunction
 from symflex.transfer.of_model import derive_all
 
@@ -66,11 +66,11 @@ TINY = 2.0**-64  # radius of a value of the characteristic function on its bound
 
 
 def boundary(model: Model, over: Sequence[str]) -> Conditions:
-    """Return the boundary of stability over two parameters in letters; SF801 if there is no formula."""
-    check_causal(model, "a boundary in letters")
+    """Return the boundary of stability over two parameters in symbols; SF801 if there is no formula."""
+    check_causal(model, "a symbolic boundary")
     parameters = [pick_gain(model.parameters, name) for name in dict.fromkeys(over)]
     if len(parameters) != 2 or len(over) != 2:  # noqa: PLR2004
-        raise UsageError(Diagnostic("SF902", "a boundary in letters has two parameters: --over K --over T"))
+        raise UsageError(Diagnostic("SF902", "a symbolic boundary has two parameters: --over K --over T"))
     pair = seen_pair(model)
     tf = derive_all(observed(model, pair[0]), [pair])[0].whole
     ring = tf.ratio.ring
@@ -86,7 +86,7 @@ def boundary(model: Model, over: Sequence[str]) -> Conditions:
     if len(moving) == 1 and tf.has_formula and is_lossless and shaped == [other] * len(delays):
         solved = _solved(tf, denominator, moving[0], (gain, other), delays)
     if solved is None:
-        message = f"the characteristic function cannot be solved for {gain} and {other} in letters"
+        message = f"the characteristic function cannot be solved for {gain} and {other} in symbols"
         hint = "it has to be linear in both, or contain one exp(-s*T) times one gain; waves must be undamped"
         raise ModelError(Diagnostic("SF801", message, parameters[0].span, hint))
     page, values = solved

@@ -1,4 +1,4 @@
-"""Distributed functions as rational ones: numerator and denominator up to a power of s, in letters.
+"""Distributed functions as rational ones: numerator and denominator up to a power of s, in symbols.
 
 Input: a transfer function with kernels, and a power.
 Output: a rational function with exact coefficients; of a compliance at the driven point the truncated series
@@ -6,7 +6,7 @@ of its reciprocal, the dynamic stiffness.
 
     cantilever with a mass at its tip, up to s^2:    1/(3*E*I/l^3 + (33*rho*A*l/140 + m)*s^2)    (Rayleigh)
 
-Kernels are Taylor series, as in :mod:`symflex.letters.limits`. What remains is a function of the squares or
+Kernels are Taylor series, as in :mod:`symflex.symbolic.limits`. What remains is a function of the squares or
 the fourth powers of wavenumbers, which the dispersion relations make rational in s.
 """
 
@@ -20,19 +20,19 @@ from symflex.algebra import NO_KERNELS, Factored, Ring
 from symflex.algebra.ring import by_powers, terms_of
 from symflex.errors import Diagnostic, UsageError
 from symflex.expressions import Name, power, product_of, sum_of
-from symflex.letters.distance import distance, roots_of
-from symflex.letters.limits import LimitFinder, NotInLettersError
 from symflex.print.forms import PrintedForm, print_form
 from symflex.print.forms.notation import constant_symbols
 from symflex.print.forms.printed import Approximation, S
 from symflex.print.forms.shapes import of_powers
 from symflex.print.read_back import read_back
+from symflex.symbolic.distance import distance, roots_of
+from symflex.symbolic.limits import LimitFinder, NotSymbolicError
 from symflex.transfer import TransferFunction, bind
 from symflex.transfer.lowest_terms import cancel
 
 
 def truncated(tf: TransferFunction, order: int) -> tuple[TransferFunction, PrintedForm]:
-    """Return a distributed function as a rational one in letters, up to a power of s."""
+    """Return a distributed function as a rational one in symbols, up to a power of s."""
     if tf.is_rational:
         exact = Approximation(("it is a rational function of s already",), {"kind": "order"}, is_whole=True)
         return tf, replace(print_form(tf), approximation=exact)
@@ -81,9 +81,9 @@ def _expanded(tf: TransferFunction, count: int) -> tuple[Factored, Factored]:
             above, below = (side.exponent_of(ring.generator(name)) for side in (num, den))
             num, den = num / wave**above, den / wave**below
             if (above - below) % order or num.depends_on(name) or den.depends_on(name):
-                raise NotInLettersError("it is not a function of s alone")
+                raise NotSymbolicError("it is not a function of s alone")
             num = num * square ** ((above - below) // order)
-    except NotInLettersError as error:
+    except NotSymbolicError as error:
         message = f"{tf.name} is not expanded in s: {error.diagnostics[0].message}"
         raise UsageError(Diagnostic("SF902", message)) from None
     return num, den

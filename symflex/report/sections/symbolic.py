@@ -1,4 +1,4 @@
-"""What a person reads off the formulas of a model, in letters: roots, limits, dimensionless groups."""
+"""What a person reads off the formulas of a model, in symbols: roots, limits, dimensionless groups."""
 
 from __future__ import annotations
 
@@ -8,11 +8,6 @@ from typing import Final
 
 from symflex.errors import SymflexError
 from symflex.expressions import Expression, Name
-from symflex.letters.frequency_equation import roots_in_letters
-from symflex.letters.groups import dimensionless_of
-from symflex.letters.limits import limits_of
-from symflex.letters.roots import IF, FactorInLetters
-from symflex.letters.short import approximation
 from symflex.options import DeriveOptions
 from symflex.print.latex.equation import model_labels
 from symflex.report.document import (
@@ -30,6 +25,11 @@ from symflex.report.document import (
 from symflex.report.sections.formulas import displayed, equations, ratio
 from symflex.report.sections.roots import decimal
 from symflex.report.study import Study, attempt
+from symflex.symbolic.frequency_equation import symbolic_roots
+from symflex.symbolic.groups import dimensionless_of
+from symflex.symbolic.limits import limits_of
+from symflex.symbolic.roots import IF, SymbolicFactor
+from symflex.symbolic.short import approximation
 from symflex.transfer import AnyTransferFunction
 
 NOTHING: Final = Mathematics("<mn>0</mn>", "0")
@@ -39,18 +39,18 @@ LONGEST: Final = 100  # characters of a condition that a person reads; symflex c
 MOST_ROWS: Final = 12  # groups, with function and scale, that a person reads
 
 
-def letter_section(study: Study) -> ChapterPart | None:
-    """Return what can be said in letters of every transfer function, nothing of models without letters."""
+def symbolic_section(study: Study) -> ChapterPart | None:
+    """Return what can be said in symbols of every transfer function, nothing of models without letters."""
     derived = attempt(lambda: [*zip(study.tfs, study.bounds, strict=True)])
     pairs = [] if isinstance(derived, SymflexError) else derived
     maps, labels, sections = {x.tf: x for x in study.maps}, model_labels(study.model), list[Section]()
     for i, (tf, bound) in enumerate(pairs, start=1):
-        found = roots_in_letters(tf, bound, maps[tf.name]) if tf.name in maps else ()
+        found = symbolic_roots(tf, bound, maps[tf.name]) if tf.name in maps else ()
         said = [block for each in found for block in _factor(each, labels)]
         said += [block for read in (_limits, _groups) for block in read(tf, labels)]
         if blocks := (*said, *_near(tf, f"eq:{study.stem}:near:{i}")):
             sections.append(Section(tf.name, blocks, f"{study.stem}-letters-{i}", ratio(tf)))
-    return ChapterPart("In letters", tuple(parted(sections)), {}) if sections else None
+    return ChapterPart("Symbolic answers", tuple(parted(sections)), {}) if sections else None
 
 
 def _limits(tf: AnyTransferFunction, labels: Mapping[str, str]) -> Iterator[Block]:
@@ -101,7 +101,7 @@ def _near(tf: AnyTransferFunction, label: str) -> tuple[Block, ...]:
     return *displayed(*near, label), text("; ".join(proof.said), ".")
 
 
-def _factor(factor: FactorInLetters, labels: Mapping[str, str]) -> Iterator[Block]:
+def _factor(factor: SymbolicFactor, labels: Mapping[str, str]) -> Iterator[Block]:
     """Yield what the roots of a factor are, and under which conditions; nothing where its names say it."""
     if factor.factor is None or any(isinstance(f.expression, Name) for f in factor.formulas):
         return
@@ -119,6 +119,6 @@ def _factor(factor: FactorInLetters, labels: Mapping[str, str]) -> Iterator[Bloc
         if len(condition) < LONGEST:
             runs += [Code(line), ". "]
         else:
-            runs += [f"{what.capitalize()} under a condition that ", Code("roots --letters"), " prints. "]
+            runs += [f"{what.capitalize()} under a condition that ", Code("roots --symbolic"), " prints. "]
     if runs:
         yield text(*runs)

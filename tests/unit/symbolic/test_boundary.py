@@ -1,4 +1,4 @@
-"""Boundaries in letters, against textbooks and against characteristic functions that were written by hand."""
+"""Symbolic boundaries, against textbooks and against characteristic functions that were written by hand."""
 
 from cmath import atan, cos, cosh, exp, pi, sin, sinh, sqrt
 

@@ -1,8 +1,8 @@
 """Frequency equations of undamped beams, rods, shafts and strings, and the certified numbers solving them.
 
-Input: a transfer function in letters, and its certified roots.
+Input: a transfer function in symbols, and its certified roots.
 Output: for each factor an equation in q, a wavenumber times a length, and in ratios of parameters; and with
-what :mod:`symflex.letters.roots` says of factors without waves, all that is said of a function.
+what :mod:`symflex.symbolic.roots` says of factors without waves, all that is said of a function.
 
     a cantilever with a mass    cosh(q)*cos(q) + 1 + mu*q*(sinh(q)*cos(q) - cosh(q)*sin(q)) = 0
                                 mu = m/(rho*A*l), omega = q^2*sqrt(E*I/(rho*A))/l^2
@@ -27,8 +27,6 @@ from symflex.algebra import LAPLACE, Factored, Ring, irreducible_factors, terms_
 from symflex.balls import precision
 from symflex.errors import UsageError
 from symflex.expressions import Call, Expression, Name, Quotient, names, power, product_of, quotient, sum_of
-from symflex.letters.roots import MOST_TERMS, FactorInLetters, LetterReader, RootFormula, numbered
-from symflex.letters.routh import BITS, Signs
 from symflex.library.elements import LineElement
 from symflex.print.forms.arrange import Arranger, ProductPrinter
 from symflex.print.forms.frequency import FrequencyPage
@@ -37,6 +35,8 @@ from symflex.print.forms.naming import Naming
 from symflex.print.forms.notation import plain_printer, wave_times_length, wavenumber_laws
 from symflex.print.roots import roots_of
 from symflex.roots import PoleZeroMap, Root
+from symflex.symbolic.roots import MOST_TERMS, LetterReader, RootFormula, SymbolicFactor, numbered
+from symflex.symbolic.routh import BITS, Signs
 from symflex.transfer import AnyBoundFunction, AnyTransferFunction
 from symflex.transfer.enclose import enclosure, later
 
@@ -52,13 +52,13 @@ NO_EQUATION: Final = (
 )
 
 
-def roots_in_letters(
+def symbolic_roots(
     tf: AnyTransferFunction, bound: AnyBoundFunction, located: PoleZeroMap
-) -> tuple[FactorInLetters, ...]:
-    """Return what can be said in letters of a function's factors, as far as the map lists their roots."""
+) -> tuple[SymbolicFactor, ...]:
+    """Return what can be said in symbols of a function's factors, as far as the map lists their roots."""
     if not tf.is_reduced or tf.is_large or tf.model.imaginary or tf.model.root is not None:
         why = "the formula is large, or has roots of s or complex coefficients"
-        return (FactorInLetters("", None, note=why),)
+        return (SymbolicFactor("", None, note=why),)
     given = {p.name: p.value for p in tf.model.parameters if p.value is not None}
     given |= dict(bound.values) if bound.is_reduced else {}
     known = {name: enclosure(x) for name, x in given.items()}
@@ -77,10 +77,10 @@ def roots_in_letters(
         ]
         said = [*numbered(found, Naming.of(tf))]
         said += [] if tf.is_rational else frequency_equations(reader, located)
-    return tuple(said) or (FactorInLetters("", None, note="no factor has letters"),)
+    return tuple(said) or (SymbolicFactor("", None, note="no factor has symbols"),)
 
 
-def frequency_equations(reader: LetterReader, located: PoleZeroMap) -> list[FactorInLetters]:
+def frequency_equations(reader: LetterReader, located: PoleZeroMap) -> list[SymbolicFactor]:
     """Return the frequency equations whose roots are listed, and why there is none of a factor."""
     tf, naming = reader.tf, Naming.of(reader.tf)
     try:
@@ -88,7 +88,7 @@ def frequency_equations(reader: LetterReader, located: PoleZeroMap) -> list[Fact
     except UsageError:
         page = None
     if page is None:
-        return [FactorInLetters("", None, note=NO_EQUATION)]
+        return [SymbolicFactor("", None, note=NO_EQUATION)]
     naming.keep([Q])
     plain = {k.generator: (k.function, k.wavenumber, k.length) for k in tf.kernels.kernels}
     turning = {
@@ -109,7 +109,7 @@ def frequency_equations(reader: LetterReader, located: PoleZeroMap) -> list[Fact
     for kind in ("poles", "zeros"):
         roots = [r for r in roots_of(located, kind) if not r.is_zero]
         if roots and not any(axis.place(r) > 0 for axis, _ in axes for r in roots):
-            made.append(FactorInLetters(kind, None, note=NO_EQUATION))
+            made.append(SymbolicFactor(kind, None, note=NO_EQUATION))
     return [each for each in made if each.solutions or not each.factor]
 
 
@@ -129,12 +129,12 @@ class _Axis:
         where = (root.on_imaginary_axis, root.im) if self.name == "omega" else (root.is_real, root.re)
         return where[1] if where[0] else arb(0)
 
-    def equation(self, part: fmpz_mpoly, kind: str, roots: Sequence[Root]) -> FactorInLetters:
+    def equation(self, part: fmpz_mpoly, kind: str, roots: Sequence[Root]) -> SymbolicFactor:
         """Return the equation of a factor with those of the roots that are its own, or why there is none."""
         used, native = self.ring.used_in([part]), self.reader.tf.ring
         kernels = {g: x for g, x in self.functions.items() if g in used}
         waves = {w for _, w, _ in kernels.values()} | (used & {*self.reader.tf.kernels.wavenumbers})
-        lengths, silent = [x for _, _, x in kernels.values()], FactorInLetters(kind, None, note=NO_EQUATION)
+        lengths, silent = [x for _, _, x in kernels.values()], SymbolicFactor(kind, None, note=NO_EQUATION)
         longest = [x for x in lengths if all((y / x).is_constant and y.unit <= x.unit for y in lengths)]
         is_one = len(waves) == 1 and waves <= self.laws.keys() and longest and IMAGINARY not in used
         if not is_one or len(part) > MOST_TERMS:
@@ -170,7 +170,7 @@ class _Axis:
         solutions = tuple(self._solutions(factor, value(scale).real, order // 2, known, roots))
         formulas.append(RootFormula(self.name, frequency, None, "rad/s", tuple(r for _, r in solutions)))
         note = EXACT.get(factor.name, "") if isinstance(factor, Call) else ""
-        return FactorInLetters(kind, factor, tuple(formulas), (), solutions, note)
+        return SymbolicFactor(kind, factor, tuple(formulas), (), solutions, note)
 
     def _equation(
         self,

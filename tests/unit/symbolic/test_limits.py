@@ -12,7 +12,7 @@ import sympy
 import symflex
 
 if TYPE_CHECKING:
-    from symflex.letters.limits import InLetters
+    from symflex.symbolic.limits import SymbolicForm
 
 PARAMETERS = """
 symflex = 1
@@ -126,7 +126,7 @@ CASES = {
 }
 
 
-def limits_of(text: str) -> InLetters:
+def limits_of(text: str) -> SymbolicForm:
     return symflex.loads(PARAMETERS + text).transfer_functions()[0].limits()
 
 
@@ -199,7 +199,7 @@ y = "w(l)"
     ("text", "reason"),
     [
         (LOSS, "loss factors hold on s = j*omega alone"),
-        (TIMOSHENKO, "s -> infinity: no term in letters, its waves are not roots of one term"),
+        (TIMOSHENKO, "s -> infinity: no symbolic term, its waves are not roots of one term"),
         (
             SIGNALS + 'y = "u*((tau - 20*T)*s + 1)/(T*tau*s^2)"\n[outputs]\nout = "y"',
             "(tau - 20*T)/(T*tau*s) is zero for the",

@@ -1,6 +1,6 @@
 """For which values of its letters the real part of a lumped function is positive at all frequencies.
 
-Input: a driving-point function Y = N/D in s and letters. Output: :class:`~symflex.letters.routh.Conditions`.
+Input: a driving-point function Y = N/D in s and letters. Output: :class:`~symflex.symbolic.routh.Conditions`.
 
 On the axis the real part has the sign of ``N(s) D(-s) + N(-s) D(s)``, a polynomial in ``x = omega^2``.
 Factors that are squares, pairs f(s) f(-s), or have positive coefficients are positive. What is left is
@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING
 
 from symflex.algebra import by_powers, degree_in, irreducible_factors
 from symflex.errors import Diagnostic, ModelError
-from symflex.letters.routh import Conditions, Signs, relation_of
 from symflex.print.forms import Arranger
 from symflex.print.forms.notation import constant_symbols
 from symflex.print.forms.shapes import SumSigns
+from symflex.symbolic.routh import Conditions, Signs, relation_of
 
 if TYPE_CHECKING:
     from flint import fmpz_mpoly
@@ -39,8 +39,8 @@ def real_part_conditions(tf: TransferFunction) -> Conditions:
     Raises ModelError: SF801 with beams, rods or delays.
     """
     if tf.kernels:
-        message = "conditions in letters are for models without beams, rods and delays"
-        raise ModelError(Diagnostic("SF801", message, None, "leave out --letters"))
+        message = "symbolic conditions are for models without beams, rods and delays"
+        raise ModelError(Diagnostic("SF801", message, None, "leave out --symbolic"))
     ring, of = tf.ratio.ring, f"real part of {tf.name}"
     context = ring.context
     mirrored = [-context.gen(0), *context.gens()[1:]]

@@ -28,9 +28,6 @@ from symflex.algebra.vanishing import OriginSeries
 from symflex.balls import at_centre, ball, precision
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, ModelError, UsageError, counted
-from symflex.letters.distance import BITS, alike, band_of, distance, moved_over, percent, roots_of, upper
-from symflex.letters.nested import NestedForm, Parts
-from symflex.letters.order import truncated
 from symflex.model import spread_box
 from symflex.model.model import IMAGINARY
 from symflex.options import DeriveOptions, share_of
@@ -40,6 +37,9 @@ from symflex.print.forms.printed import Approximation, terms_of
 from symflex.print.forms.shapes import shaped
 from symflex.print.read_back import read_back
 from symflex.roots import PoleZeroMap
+from symflex.symbolic.distance import BITS, alike, band_of, distance, moved_over, percent, roots_of, upper
+from symflex.symbolic.nested import NestedForm, Parts
+from symflex.symbolic.order import truncated
 from symflex.transfer import AnyTransferFunction, BoundTransferFunction, TransferFunction, bind
 from symflex.transfer.bind import values_for
 from symflex.transfer.bound import EnclosedTransferFunction

@@ -120,7 +120,7 @@ def _ahead(exponent: int) -> Expression:
 
 
 def pulse_over(bound: BoundTransferFunction, timing: Timing) -> tuple[Expression, Fixed]:
-    """Return a pulse function in letters of its times; SF804, SF810 where it has no such form."""
+    """Return a pulse function in symbols of its times; SF804, SF810 where it has no such form."""
     constants, responses = _Constants(), step_response(bound)
     total: list[Expression] = []
     for part, late in enumerate(responses.delays):

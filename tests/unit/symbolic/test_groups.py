@@ -11,7 +11,7 @@ import sympy
 import symflex
 
 if TYPE_CHECKING:
-    from symflex.letters.limits import InLetters
+    from symflex.symbolic.limits import SymbolicForm
 
 MASS = '[elements]\nbody = { type = "mass", at = "x", m = "m" }\n'
 SPRING = 'wall = { type = "spring", between = ["x", "ground"], k = "k" }\n'
@@ -125,7 +125,7 @@ CASES: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
 }
 
 
-def reading_of(text: str, parameters: dict[str, str], analysis: str = "") -> InLetters:
+def reading_of(text: str, parameters: dict[str, str], analysis: str = "") -> SymbolicForm:
     lines = "".join(f'{name} = "{value}"\n'.replace('""', "{}") for name, value in parameters.items())
     spec = f"symflex = 1\n[parameters]\n{lines}{text}\n{analysis}"
     return symflex.loads(spec).transfer_functions()[0].dimensionless()

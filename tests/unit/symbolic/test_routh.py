@@ -1,4 +1,4 @@
-"""Conditions in letters, against numpy's roots of characteristic polynomials that were written by hand."""
+"""Symbolic conditions, against numpy's roots of characteristic polynomials that were written by hand."""
 
 import json
 
@@ -237,7 +237,7 @@ def test_json_and_latex_say_the_same():
     assert str(found).split("\n    ") == [
         "poles: all in the open left half-plane exactly when",
         "T_1 + T_2 > K*T_1*T_2",
-        "for positive values of all letters",
+        "for positive values of all symbols",
     ]
 
 

@@ -7,8 +7,8 @@ import sympy
 from symflex import pipeline
 from symflex.errors import UsageError
 from symflex.expressions import format_expression
-from symflex.letters.order import truncated
 from symflex.print.text import form_text
+from symflex.symbolic.order import truncated
 
 VALUES = {"E": "70 GPa", "I": "1e-8 m^4", "rho": "2700 kg/m^3", "A": "1e-3 m^2", "l": "1 m", "m": "1 kg"}
 VALUES |= {"G": "26 GPa", "J": "1 g*m^2", "J_p": "1e-8 m^4", "eta": "1 us"}

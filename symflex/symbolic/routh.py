@@ -98,7 +98,7 @@ Found = Sequence[tuple["fmpz_mpoly", SymbolicRelation]]
 
 @dataclass(frozen=True)
 class Conditions:
-    """Where the poles or zeros of a model lie, in letters; its text says so."""
+    """Where the poles or zeros of a model lie, in symbols; its text says so."""
 
     model: Model
     of: str  # ``poles`` or ``zeros of OUT/IN``
@@ -110,8 +110,8 @@ class Conditions:
 
     def __str__(self) -> str:
         loose = ", ".join(p.name for p in self.model.parameters if p.assume != "positive")
-        letters = "parameters" if self.where else "letters"
-        values = f"for positive values of all {letters}{f' but {loose}' if loose else ''}"
+        symbols = "parameters" if self.where else "symbols"
+        values = f"for positive values of all {symbols}{f' but {loose}' if loose else ''}"
         lines = (f"where {name} = {format_expression(e)}" for name, e in self.where)
         realness = (f"where {root} is real" for root in self.roots_at_rest)
         return "\n    ".join(
@@ -153,10 +153,10 @@ def conditions(model: Model, of: str = POLES, tf: str | None = None) -> Conditio
     """
     if of not in (POLES, "zeros"):
         raise UsageError(Diagnostic("SF902", f"conditions are those of poles or zeros, not of '{of[:64]}'"))
-    check_causal(model, "stability in letters")
+    check_causal(model, "symbolic stability")
     if model.is_distributed:
-        message = "conditions in letters are for models without beams, rods and delays"
-        hint = "a boundary of two parameters in letters: --letters --over K --over T"
+        message = "symbolic conditions are for models without beams, rods and delays"
+        hint = "a symbolic boundary of two parameters: --symbolic --over K --over T"
         raise ModelError(Diagnostic("SF801", message, None, hint))
     pairs = pick_pairs(model, [tf] if tf else [])
     if of != POLES:

@@ -6,8 +6,8 @@ import mpmath
 import pytest
 
 from symflex import pipeline
-from symflex.letters.frequency_equation import roots_in_letters
-from symflex.letters.roots import FactorInLetters
+from symflex.symbolic.frequency_equation import symbolic_roots
+from symflex.symbolic.roots import SymbolicFactor
 
 BEAM = 'b = { type = "beam", between = ["%s", "%s"], E = "E", I = "I", rho = "rho", A = "A", l = "l" }'
 GUIDE = ', g = { type = "slider", at = "%s" }'
@@ -86,7 +86,7 @@ CASES = (
 )
 
 
-def equations_of(elements: str, ends: tuple[str, str]) -> list[FactorInLetters]:
+def equations_of(elements: str, ends: tuple[str, str]) -> list[SymbolicFactor]:
     """Return what is said of the transfer function of a member."""
     values = "E = 6, I = 0.5, rho = 8, A = 0.25, l = 3, m = 0.75, k = 5, N = 7, b = 2"
     model = pipeline.loads(
@@ -95,7 +95,7 @@ def equations_of(elements: str, ends: tuple[str, str]) -> list[FactorInLetters]:
     )
     (tf,) = pipeline.derive_all(model)
     bound = pipeline.bind(tf)
-    return [*roots_in_letters(tf, bound, pipeline.roots(bound))]
+    return [*symbolic_roots(tf, bound, pipeline.roots(bound))]
 
 
 def solutions(book, count: int) -> list[mpmath.mpf]:

@@ -6,7 +6,7 @@ import pytest
 from flint import acb, arb
 
 from symflex import pipeline
-from symflex.letters.distance import distance, moved_over, roots_of
+from symflex.symbolic.distance import distance, moved_over, roots_of
 from symflex.transfer import bind
 
 SMALL = 1e-6

@@ -1,9 +1,9 @@
-"""Conditions in letters for a positive real part, against those derived by hand."""
+"""Symbolic conditions for a positive real part, against those derived by hand."""
 
 from symflex import pipeline
 from symflex.contact import at_port
-from symflex.letters.real_part import real_part_conditions
 from symflex.model.ports import port_named
+from symflex.symbolic.real_part import real_part_conditions
 
 WALL = """symflex = 1
 parameters = { m = {}, b = {}, K = {}, tau = {}, B = {}, k = {} }

@@ -1,4 +1,4 @@
-"""Roots in letters: formulas as books print them, kinds of roots against numpy, refusals."""
+"""Symbolic roots: formulas as books print them, kinds of roots against numpy, refusals."""
 
 import re
 from random import Random
@@ -9,8 +9,8 @@ import sympy
 
 from symflex import pipeline
 from symflex.expressions import format_expression
-from symflex.letters.frequency_equation import roots_in_letters
-from symflex.letters.roots import FactorInLetters, letters_text
+from symflex.symbolic.frequency_equation import symbolic_roots
+from symflex.symbolic.roots import SymbolicFactor, symbolic_text
 
 
 def part(name: str, kind: str, ends: str, **values: str) -> str:
@@ -91,14 +91,14 @@ BOOKS = (
 )
 
 
-def said_of(parameters: str, text: str, seed: int = 3) -> tuple[list[FactorInLetters], dict[str, float]]:
+def said_of(parameters: str, text: str, seed: int = 3) -> tuple[list[SymbolicFactor], dict[str, float]]:
     """Return what is said of the first function of a model whose parameters have random values."""
     draw = Random(seed)
     values = {name: draw.randint(1, 60) / 8 for name in parameters.split()}
     given = ", ".join(f"{name} = {value}" for name, value in values.items())
     (tf,) = pipeline.derive_all(pipeline.loads(f"symflex = 1\nparameters = {{ {given} }}\n{text}"))
     bound = pipeline.bind(tf)
-    return [*roots_in_letters(tf, bound, pipeline.roots(bound))], values
+    return [*symbolic_roots(tf, bound, pipeline.roots(bound))], values
 
 
 def test_formulas_are_those_of_books() -> None:
@@ -225,7 +225,7 @@ def test_kinds_of_roots_of_even_polynomials_are_those_numpy_finds() -> None:
 
 
 def test_a_condition_says_where_a_pair_becomes_real() -> None:
-    said = letters_text(said_of("m b k", HELD + part("d", "damper", "x ground", b="b"))[0], 200)
+    said = symbolic_text(said_of("m b k", HELD + part("d", "damper", "x ground", b="b"))[0], 200)
     assert "a complex pair if 4*m*k > b^2" in said
     assert "two real roots if b^2 > 4*m*k" in said
 
@@ -235,7 +235,7 @@ def test_the_tip_of_the_bending_beam_has_real_zeros_for_a_long_overhang() -> Non
     model = pipeline.load("derivations/eppinger1988/lumped_bending_beam.toml")
     (tf,) = pipeline.derive_all(model, [("X_tip", "F")])
     bound = pipeline.bind(tf)
-    found = roots_in_letters(tf, bound, pipeline.roots(bound))
+    found = symbolic_roots(tf, bound, pipeline.roots(bound))
     (real,) = (
         text for each in found for text, holds, _ in each.kinds if holds and text.startswith("a real pair")
     )
@@ -251,7 +251,7 @@ def test_what_has_no_short_letters_says_so() -> None:
     found, _ = said_of("a b c d", SIGNAL.format("u/(a*s^3 + b*s^2 + c*s + d)"))
     assert [each.note for each in found] == ["a factor of degree 3 in s has no short formula"]
     found, _ = said_of("", SIGNAL.format("u/(s + 1)"))
-    assert [each.note for each in found] == ["no factor has letters"]
+    assert [each.note for each in found] == ["no factor has symbols"]
 
 
 def test_a_square_of_a_difference_stays_below_its_root() -> None:

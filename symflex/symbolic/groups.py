@@ -28,16 +28,6 @@ from symflex.algebra.ring import terms_of
 from symflex.balls import precision
 from symflex.errors import SymflexError, Text
 from symflex.expressions import Expression, Name, format_expression
-from symflex.letters.limits import (
-    InLetters,
-    NotInLettersError,
-    Row,
-    definitions_of,
-    opened,
-    times,
-    value_of,
-    written_powers,
-)
 from symflex.library.elements import LineElement
 from symflex.model import ExactValue, with_numbers
 from symflex.model.linearity import factored_of
@@ -49,6 +39,16 @@ from symflex.print.forms.shapes import plain, powers_of
 from symflex.print.label import symbol
 from symflex.print.latex.equation import ratio_latex
 from symflex.quantities import Dimension, unit_of
+from symflex.symbolic.limits import (
+    NotSymbolicError,
+    Row,
+    SymbolicForm,
+    definitions_of,
+    opened,
+    times,
+    value_of,
+    written_powers,
+)
 from symflex.transfer import AnyTransferFunction, TransferFunction
 from symflex.transfer.enclose import principal_values
 from symflex.transfer.of_model import derive_all
@@ -70,26 +70,26 @@ NAMES: Final = {  # names of groups, by the unit of what is divided
 BITS, ENOUGH = 192, 64  # precision at the test points, and how many bits of it have to agree
 
 
-def dimensionless_of(tf: AnyTransferFunction) -> InLetters:
+def dimensionless_of(tf: AnyTransferFunction) -> SymbolicForm:
     """Return a transfer function in dimensionless groups, its scale, and what these are."""
     try:
         if not tf.is_reduced or tf.is_zero or tf.model.root is not None:
-            raise NotInLettersError("it is nested, zero, or has roots of s")
+            raise NotSymbolicError("it is nested, zero, or has roots of s")
         return _in_groups(tf)
     except SymflexError as error:
-        return InLetters(tf, (), (f"no groups: {error.diagnostics[0].message}",))
+        return SymbolicForm(tf, (), (f"no groups: {error.diagnostics[0].message}",))
 
 
-def _in_groups(tf: TransferFunction) -> InLetters:
+def _in_groups(tf: TransferFunction) -> SymbolicForm:
     parameters = {p.name: p for p in tf.parameters if not p.is_imaginary}
     if missing := next((n for n, p in parameters.items() if not p.unit and p.value is None), None):
-        raise NotInLettersError(f"nothing says which unit '{missing}' has")
+        raise NotSymbolicError(f"nothing says which unit '{missing}' has")
     groups, scale = _basis(tf, parameters)
     base = {name: ExactValue(ONE) for name in parameters if name not in groups}
     model = with_numbers(tf.model, groups, base, in_kernels=True)
     form = print_form(derive_all(model, [(tf.output.name, tf.input.name)])[0])
     if form.laws:
-        raise NotInLettersError("its waves have no formula")
+        raise NotSymbolicError("its waves have no formula")
     naming = Naming.of(tf)
     # A form may take the names of the base, which it does not know.
     freed = {name: Name(naming.take(name)[0]) for name, _ in form.where if name in base}
@@ -100,7 +100,7 @@ def _in_groups(tf: TransferFunction) -> InLetters:
     head = Row(tf.name, " = scale *", rf"{ratio_latex(tf)} &= G_0 \cdot", function)
     named = [Row(name, " =", f"{symbol(name, {}).latex} &=", line) for name, line in lines.items()]
     sized = _row(tf, "scale", size)._replace(left="G_0 &=", unit=tf.unit)
-    found = InLetters(tf, (head, *named, sized, *rows))
+    found = SymbolicForm(tf, (head, *named, sized, *rows))
     _check(found)
     return found
 
@@ -124,7 +124,7 @@ def _basis(
     for text, row in wanted.items():
         main = next(iter(row), "")
         if main not in groups or times((row, ONE), (groups[main], -row[main])):
-            raise NotInLettersError(f"'{text}' in prefer of [analysis] is not a group, or not beside others")
+            raise NotSymbolicError(f"'{text}' in prefer of [analysis] is not a group, or not beside others")
     return groups, scale
 
 
@@ -148,7 +148,7 @@ def _named_groups(
         group = written_powers(times((powers, ONE), (halves, -ONE)))
         remainder = prod((units[n] ** x for n, x in row.items()), start=Dimension())
         if remainder != Dimension():
-            raise NotInLettersError(f"{format_expression(group)} would be one, and is in {remainder}")
+            raise NotSymbolicError(f"{format_expression(group)} would be one, and is in {remainder}")
         images[main] = written_powers(halves | {Name(name): ONE})
         rows.append(_row(tf, name, group, words))
     return rows, images
@@ -216,7 +216,7 @@ def _invariants(tf: TransferFunction) -> tuple[list[Exponents], Exponents]:
     for law in tf.kernels.dispersions:
         orders = {"wave": {0: 2}, "bending": {0: 4}, "pair": {0: 4, 2: 2}, "exponential": {}}.get(law.kind)
         if orders is None:
-            raise NotInLettersError("its waves have no formula")
+            raise NotSymbolicError("its waves have no formula")
         for i, n in orders.items():
             exponents = powers(law.characteristic[i])
             rows += [times(({w: Fraction(n)}, ONE), (exponents, -ONE)) for w in law.wavenumbers]
@@ -243,7 +243,7 @@ def _exponents(expression: Expression) -> Exponents | None:
     return times(*parts)
 
 
-def _check(found: InLetters) -> None:
+def _check(found: SymbolicForm) -> None:
     """Compare what is shown, read again, with the function at its test points."""
     probes = probes_of(found.tf)
     lines = {r.name: e.parse(Text.alone("<group>", format_expression(r.expression))) for r in found.rows}
@@ -256,4 +256,4 @@ def _check(found: InLetters) -> None:
         shown = principal_values(opened(found.tf, term), len(chosen), known.__getitem__)
         pairs = [(x, y) for x, y in zip(shown, probes.values(BITS), strict=True) if x.is_finite()]
     if not pairs or not all(x.overlaps(y) and x.rel_accuracy_bits() > ENOUGH for x, y in pairs):
-        raise NotInLettersError("what was found is not proved")
+        raise NotSymbolicError("what was found is not proved")

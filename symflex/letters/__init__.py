@@ -1,5 +1,0 @@
-"""What a person reads off a formula, in letters, each statement with its proof.
-
-Input: transfer functions, their certified roots, the boxes of their parameters. Output: short formulas with a
-rigorous error bound, limits, dimensionless groups, roots and conditions in letters.
-"""
