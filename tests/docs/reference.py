@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import click
 
 import symflex
-from symflex.cli import group
+from symflex.cli import COMMANDS, GROUPS, group
 from symflex.cli.library import in_si
 from symflex.errors import Text
 from symflex.expressions import parse_equation
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from symflex.library.elements import Choice, Element, ParameterPort, Port
 
 END = "<!-- end of reference -->"
-PLACE = re.compile(rf"^(<!-- reference: (\w+) -->)$.*?^{END}$", re.MULTILINE | re.DOTALL)
+PLACE = re.compile(rf"^(<!-- reference: (\w+)(?: (\w+))? -->)$.*?^{END}$", re.MULTILINE | re.DOTALL)
 
 
 FORMULA_END = "<!-- end of formula -->"
@@ -41,10 +41,14 @@ FORMULA = re.compile(rf"^(<!-- (formula|equation): (.+) -->)$.*?^{FORMULA_END}$"
 
 def with_tables(markdown: str) -> str:
     """Return a page with its tables and formulas as the program makes them now."""
-    markdown = PLACE.sub(lambda match: f"{match[1]}\n\n{PARTS[match[2]]()}\n\n{END}", markdown)
+    markdown = PLACE.sub(lambda match: f"{match[1]}\n\n{_part(match[2], match[3])}\n\n{END}", markdown)
     return FORMULA.sub(
         lambda match: f"{match[1]}\n```math\n{LATEX[match[2]](match[3])}\n```\n{FORMULA_END}", markdown
     )
+
+
+def _part(what: str, name: str | None) -> str:
+    return command(name) if name else PARTS[what]()
 
 
 def _formula(asked: str) -> str:
@@ -81,11 +85,21 @@ def things() -> str:
     return _table(rows, ("you have", "write", "how"))
 
 
-def commands() -> str:
-    """Return one section per command, in the order of ``symflex --help``."""
+def command(name: str) -> str:
+    """Return the help of a command."""
     with group.make_context("symflex", [], resilient_parsing=True) as context:
-        found = ((name, group.get_command(context, name)) for name in group.list_commands(context))
-        return "\n\n".join(_command(name, command, context) for name, command in found if command)
+        found = group.get_command(context, name)
+        assert found is not None, name
+        return _command(name, found, context, "")
+
+
+def commands() -> str:
+    """Return a table of all commands, in the groups of ``symflex --help``."""
+    rows: list[tuple[str, ...]] = []
+    for title, names in GROUPS.items():
+        rows.append((f"**{title}**", ""))
+        rows += [(f"[`{name}`](commands/{name}.md)", COMMANDS[name][1]) for name in names.split()]
+    return _table(rows, ("command", "what it does"))
 
 
 def units() -> str:
@@ -124,7 +138,7 @@ def _block(name: str, block: Block) -> str:
     return "\n\n".join([f"### `{name}`", f"`{block.summary}`", _table(map(_parameter_row, block.parameters))])
 
 
-def _command(name: str, command: click.Command, parent: click.Context) -> str:
+def _command(name: str, command: click.Command, parent: click.Context, heading: str) -> str:
     context = click.Context(command, info_name=name, parent=parent)
     usage = command.get_usage(context).removeprefix("Usage: ")
     formatter, epilog = context.make_formatter(), context.make_formatter()
@@ -135,9 +149,10 @@ def _command(name: str, command: click.Command, parent: click.Context) -> str:
     names = ", ".join(f"`{name}`" for name in re.findall(r"^  (?:-\w, )?(--[\w-]+)", common, re.MULTILINE))
     about = inspect.cleandoc(command.help or "").replace("\b\n", "")
     inside = command.commands.items() if isinstance(command, click.Group) else ()
-    parts = [_command(f"{name} {inner}", one, parent) for inner, one in inside]
-    shared = [f"[Common options](#common-options): {names}."] if names else []
-    return "\n\n".join([f"## `symflex {name}`", _text(usage), about, _text(options), *shared, *parts])
+    parts = [_command(f"{name} {inner}", one, parent, f"## symflex {name} {inner}") for inner, one in inside]
+    shared = [f"[Common options](../command-line.md#common-options): {names}."] if names else []
+    found = [heading, _text(usage), about, _text(options) if options.strip() else "", *shared, *parts]
+    return "\n\n".join(part for part in found if part)
 
 
 def _text(content: str) -> str:

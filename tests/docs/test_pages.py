@@ -6,6 +6,7 @@ import re
 import pytest
 
 import symflex
+from symflex.cli import COMMANDS
 from tests.docs.reference import FORMULA, PLACE, with_tables
 from tests.docs.update import copy_files, printed
 from tests.house.repository import ROOT, all_blocks, blocks, pages
@@ -81,6 +82,12 @@ def test_tables_and_formulas_of_a_page_are_those_of_the_program(page, monkeypatc
     monkeypatch.setenv("COLUMNS", "80")
     text = page.read_text("utf-8")
     assert with_tables(text) == text, "write them anew: python -m tests.docs.update"
+
+
+def test_every_command_has_a_page_with_its_help():
+    pages = {page.stem: page.read_text("utf-8") for page in (ROOT / "docs" / "commands").glob("*.md")}
+    assert pages.keys() == COMMANDS.keys()
+    assert all(f"<!-- reference: command {name} -->" in text for name, text in pages.items())
 
 
 def test_every_specification_on_a_page_loads_and_one_shown_as_wrong_is_refused():

@@ -4,7 +4,7 @@ from symflex import errors
 from tests.house.repository import ROOT
 
 CODE = re.compile(r"\bSF\d{3}\b")
-ROW = re.compile(r"^\| \[?`(SF\d{3})`(?:\]\(errors/SF\d{3}\.md\))? \|", re.MULTILINE)
+ROW = re.compile(r"^\| \[?`(SF\d{3})`(?:\]\(#[\w-]+\))? \|", re.MULTILINE)
 
 
 def used():
@@ -27,10 +27,11 @@ def test_every_documented_code_is_used():
     assert set(documented()) - used() == set()
 
 
-def test_every_page_about_a_code_is_linked_from_the_table():
+def test_every_cure_is_linked_from_the_table():
     table = (ROOT / "docs" / "error-codes.md").read_text(encoding="utf-8")
-    pages = {page.stem for page in (ROOT / "docs" / "errors").glob("*.md")}
-    assert set(re.findall(r"^\| \[`(SF\d{3})`\]\(errors/\1\.md\) \|", table, re.MULTILINE)) == pages != set()
+    cures = set(re.findall(r"^### .* \((SF\d{3})\)$", table, re.MULTILINE))
+    linked = re.findall(r"^\| \[`(SF\d{3})`\]\(#[\w-]+-(sf\d{3})\) \|", table, re.MULTILINE)
+    assert {code for code, anchor in linked if code.lower() == anchor} == cures != set()
 
 
 def test_the_codes_are_listed_once_and_in_order():

@@ -194,7 +194,7 @@ def test_a_fitted_delay_is_written_and_taken_by_check_derive_and_roots(oscillato
 def test_json_has_the_documented_keys(oscillator):
     document = oscillator("fit", "one.csv", "--modes", "1", "--json").json
     assert document["schema"] == "symflex.fit/1"
-    page = (ROOT / "docs" / "command-line.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "commands" / "fit.md").read_text(encoding="utf-8")
     section = page.partition("### `symflex.fit/1`")[2].partition("\n### ")[0]
     keys = {
         *document,

@@ -21,7 +21,7 @@ def test_json_has_the_documented_keys(rod):
         done = rod("rational", "rod.toml", "--tf", "X/F", "--modes", "1", "--form", form, "--json")
         assert (done.code, done.err) == (0, ""), form
         assert set(done.json) == KEYS, form
-    page = (ROOT / "docs" / "command-line.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "commands" / "rational.md").read_text(encoding="utf-8")
     section = page.partition("### `symflex.rational/1`")[2].partition("\n#")[0]
     assert all(f"`{key}`" in section for key in KEYS - {"schema"})
 
@@ -74,7 +74,7 @@ def test_state_equations_have_a_proved_error_and_the_documented_keys(several):
     # y/u is kept whole; 1/(s + 900) keeps its static value 1/900 only, and is off by that far out.
     done = several("rational", "sum.toml", "--matrix", "--modes", "2", "--json")
     assert done.code == 0 and done.json["error"]["least"] <= 1 / 900 <= done.json["error"]["most"] * 1.0001
-    page = (ROOT / "docs" / "command-line.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "commands" / "rational.md").read_text(encoding="utf-8")
     section = page.partition("### `symflex.reduced/1`")[2].partition("\n#")[0]
     assert all(f"`{key}`" in section for key in done.json.keys() - {"schema"})
 
@@ -90,7 +90,7 @@ def test_norms_of_a_matrix_are_printed(several):
     assert "largest singular value 1.000" in several("peak", "sum.toml", "--matrix").out
     norm = several("peak", "sum.toml", "--matrix", "--h2", "--json").json
     assert float(norm["h2"]["value"]) == pytest.approx((1 / 2 + 1 / 100 + 1 / 1800) ** 0.5)
-    page = (ROOT / "docs" / "command-line.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "commands" / "peak.md").read_text(encoding="utf-8")
     section = page.partition("### `symflex.h2/1`")[2].partition("\n#")[0]
     assert all(f"`{key}`" in section for key in norm.keys() - {"schema"})
 
