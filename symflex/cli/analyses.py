@@ -245,6 +245,10 @@ class Ranged(Command):
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Read the arguments, those of a range with a name as of a range of its own."""
         named = [a == "--range" and _NAME.fullmatch(b) is not None for a, b in pairwise([*args, ""])]
+        for i in (i for i, is_named in enumerate(named) if is_named):
+            if len(ends := args[i + 2 : i + 4]) < 2 or any(end.startswith("--") for end in ends):  # noqa: PLR2004
+                message = f"'--range {args[i + 1]}' needs both ends: --range {args[i + 1]} LO HI"
+                raise click.BadOptionUsage("--range", message, ctx)
         plain = ["--range-of" if is_named else a for a, is_named in zip(args, named, strict=True)]
         return super().parse_args(ctx, plain)
 

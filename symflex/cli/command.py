@@ -8,6 +8,7 @@ calls the function below ``@command_of("rational", RationalOptions)`` with
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import Field, dataclass, fields
 from pathlib import Path
@@ -111,7 +112,17 @@ COMMON: Final = frozenset("--json --set --allow-outside --budget --memory --help
 
 
 class Command(click.Command):
-    """A command whose help lists the options of nearly every command last."""
+    """A command with each option once; its help lists those of nearly every command last."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Read the arguments; a value that a later one would replace without a word is refused."""
+        given = Counter(self.make_parser(ctx).parse_args([*args])[2])
+        for one, times in given.items():
+            is_one = isinstance(one, click.Option) and not (one.multiple or one.is_flag)
+            if times > 1 and is_one and not ctx.resilient_parsing:
+                message = f"'{one.opts[0]}' is given {times} times: give it once"
+                raise click.BadOptionUsage(one.opts[0], message, ctx)
+        return super().parse_args(ctx, args)
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the options of this command, then the common ones."""

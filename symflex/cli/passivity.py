@@ -42,6 +42,8 @@ def passivity(spec: Specification, given: PassivityOptions) -> int:
     if given.symbolic and (given.over or len(given.ports) > 1):
         other = "--over" if given.over else "two ports"
         raise refused(f"--symbolic is not available with {other}", "ask for each alone")
+    if (given.limits or given.ranges) and not given.over:
+        raise refused("--range is of a parameter that --over names", "for instance --over K --range 0 10")
     if len(given.ports) > 1 and not given.over:
         return _two_ports(spec, given)
     port = next(iter(given.ports), None)

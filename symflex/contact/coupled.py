@@ -205,7 +205,11 @@ def coupled_stability(
     if lost := [p.name for p in free if p.name not in names]:
         hint = f"give it one: --set {lost[0]}=VALUE, or ask for it: --over {lost[0]}"
         raise refused(f"'{lost[0]}' of the environment has no value", hint)
+    if spare := [name for name, *_ in given.ranges if name not in names]:
+        raise refused(f"a range of '{spare[0][:64]}', which is not asked for", f"--over {spare[0][:64]} asks")
     if not names:
+        if given.limits or given.up_to is not None:
+            raise refused("no letter of the environment is without a value, and so none has a range")
         return CoupledStability(environment, _located(model))
     if len(names) > 2:  # noqa: PLR2004 (a chart has two axes)
         raise refused(f"{len(names)} letters have no value: at most two", "give others one: --set NAME=VALUE")

@@ -19,14 +19,15 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
+from math import gcd
 
 from flint import arb, fmpz_mpoly
 
 from symflex.algebra import degree_in, irreducible_factors
-from symflex.balls import ball, precision
+from symflex.balls import Branching, ball, branch, precision
 from symflex.contact.passivity import find_passivity
 from symflex.contact.port import at_port
-from symflex.errors import Diagnostic, SymflexError, UsageError, refused
+from symflex.errors import BudgetError, Diagnostic, SymflexError, UsageError, refused
 from symflex.loops.loop import pick_gain
 from symflex.loops.over import limits_of
 from symflex.model import ContactPort, ExactValue, Model, ModelParameter, with_numbers
@@ -45,6 +46,7 @@ TRIED = 9  # values tried at first where no polynomial decides
 ASIDE = Fraction(1, 97)  # share of the range by which they are off equal parts
 SHARE = Fraction(1, 10_000)  # of the range, to which ends are halved then
 SLICES = 21  # values of the second parameter of a chart
+COARSEST = 8  # every so many slices are the first: if the time ends, what is known is spread over the range
 SPARE = 8  # digits of roots beyond those printed
 NOT_EVERY = "some values that were tried are not decided, or none of them is passive"
 NOT_BETWEEN = "between values that were tried, as neither impedance nor admittance is a straight line in '{}'"
@@ -126,11 +128,12 @@ class PassiveChart(Printed):
 
     other: ModelParameter
     slices: tuple[tuple[Fraction, PassiveValues], ...]
+    missing: tuple[str, ...] = ()  # which slices the budget left out
 
     @property
     def certified(self) -> bool:
-        """Whether every slice is."""
-        return all(values.certified for _, values in self.slices)
+        """Whether every slice is, and none is missing."""
+        return not self.missing and all(values.certified for _, values in self.slices)
 
     def to_json_dict(self) -> dict[str, object]:
         """Return the chart in the schema ``symflex.passivity_chart/1``, in SI units."""
@@ -142,6 +145,7 @@ class PassiveChart(Printed):
             "units": [first.parameter.unit, self.other.unit],
             "slices": [{"value": float(value)} | values.to_json_dict() for value, values in self.slices],
             "certified": self.certified,
+            "reasons": list(self.missing),
         }
 
     def passages(self) -> list[Passage]:
@@ -153,7 +157,7 @@ class PassiveChart(Printed):
         status = "certified" if self.certified else "NOT CERTIFIED"
         lines = [f"{name}, {other}   {status} at each value of {other}: passive at port {first.port.name}"]
         lines += [f"{INDENT}examined: {low:.6g} < {name} < {high:.6g}"]
-        reasons = dict.fromkeys(r for _, values in self.slices for r in values.reasons)
+        reasons = dict.fromkeys((*self.missing, *(r for _, values in self.slices for r in values.reasons)))
         lines += [f"{INDENT}not proved: {reason}" for reason in reasons]
         rows: list[tuple[str, ...]] = [
             (f"{other} [{other_unit}]" if other_unit else other, f"passive {name} [{unit}]" if unit else name)
@@ -188,9 +192,19 @@ def passive_over(model: Model, given: PassivityOptions) -> PassiveValues | Passi
     low, high = limits_of(model, other, given.stability)
     steps = (low + (high - low) * i / (SLICES - 1) for i in range(SLICES))
     values = [x for x in steps if x > 0 or (x == 0 and other.assume != "positive") or other.assume == "real"]
+    search: Branching[Fraction, tuple[Fraction, PassiveValues]] = branch(
+        sorted(values, key=lambda x: -gcd(values.index(x), COARSEST)),
+        lambda x: (x, _values_of(_with(model, other, x), port, first, limits, given.digits)),
+        lambda _: (),
+        keeps=True,
+    )
+    if search.over and not search.decided:
+        raise BudgetError(search.over)
+    missing = f"at {len(search.undecided)} of {len(values)} values of '{other.name}': "
     return PassiveChart(
         other,
-        tuple((x, _values_of(_with(model, other, x), port, first, limits, given.digits)) for x in values),
+        tuple(sorted(search.decided, key=lambda pair: pair[0])),
+        (missing + search.over.message,) if search.over else (),
     )
 
 
@@ -215,6 +229,8 @@ def _values_of(
     def verdict(value: Fraction) -> bool | None:
         try:
             return find_passivity(_with(model, parameter, value), port, digits, is_explained=False).passive
+        except BudgetError:
+            raise
         except SymflexError:  # there the equations have no solution
             return None
 

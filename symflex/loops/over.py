@@ -91,7 +91,8 @@ def stability_over(
     for parameter in parameters:
         if not function.depends_on(parameter.name):
             message = f"no pole of the model depends on '{parameter.name}'"
-            raise ModelError(Diagnostic("SF801", message, parameter.span, _sweep(parameter.name)))
+            hint = f"for every value of it the poles are the same: ask without --over {parameter.name}"
+            raise ModelError(Diagnostic("SF801", message, parameter.span, hint))
     end = _end_inside(function, limits)
     is_endless = isinstance(end, str) and end != VANISHES and PolesUpTo.serves(function)
     if len(names) > 1:

@@ -456,7 +456,8 @@ def _passages(stability: StabilityMap) -> Iterator[Passage]:
     scope = "" if stability.is_complete else ", as far as poles were counted"
     scope = f", {stability.where_data_end}" if stability.where_data_end else scope
     stable = [2 * INDENT + _between(interval, stability) for interval in stability.stable]
-    yield Passage([f"{INDENT}stable for{scope}" + (":" if stable else ": no gain"), *stable])
+    word = "gain" if stability.is_gain else "value"
+    yield Passage([f"{INDENT}stable for{scope}" + (":" if stable else f": no {word}"), *stable])
     marginal = [
         2 * INDENT + _between(i, stability) for i in stability.intervals if i.poles.word == "marginal"
     ]

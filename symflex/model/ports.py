@@ -218,7 +218,10 @@ def _is_place(reader: Reader, reference: NodeReference, text: Text, what: str, m
     nodes = {n.name: n for n in model.nodes}
     node = nodes.get(reference.node)
     if node is None:
-        hint = nearest(reference.node, nodes) or "nodes: " + (", ".join([*nodes][:LISTED_NAMES]) or "none")
+        known = {"ports": [p.name for p in model.ports], "nodes": [*nodes]}
+        listed = [f"{group}: {', '.join(some[:LISTED_NAMES])}" for group, some in known.items() if some]
+        hint = nearest(reference.node, [*known["ports"], *nodes]) or "; ".join(listed)
+        hint = hint or f"without nodes, name an input and an output: {PAIR_EXAMPLE}"
         reader.note("SF210", f"{what}: there is no node '{reference.node[:64]}'", text.span, hint)
         return False
     if reference.component not in (*node.components, ""):

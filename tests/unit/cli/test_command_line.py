@@ -107,6 +107,17 @@ def test_a_command_used_wrongly_ends_with_code_2(shell):
     assert "Did you mean 'derive'?" in shell("derve").err
 
 
+def test_a_value_that_a_later_one_would_replace_is_refused(shell):
+    done = shell("contact", "x.toml", "--environment", "spring", "--port", "a", "--port", "b")
+    assert (done.code, done.out) == (2, "")
+    assert "'--port' is given 2 times" in done.err
+
+
+def test_a_range_without_both_ends_says_how_it_is_written(shell):
+    for words in (["--range", "K", "10"], ["--range", "a", "b", "--over", "K"]):
+        assert "needs both ends" in shell("passivity", "x.toml", *words).err
+
+
 def test_without_a_command_the_help_is_shown(shell):
     done = shell()
     assert "Analyse:" in done.out + done.err

@@ -72,3 +72,23 @@ def test_a_z_width_is_drawn_with_an_environment_and_of_passive_values(loop, caps
     drawn = ["--environment", "spring", "--resolve", "20 %", "-o", "z.svg"]
     assert run(["plot", "loop.toml", "z-width", *over, *drawn]) == 0
     assert (loop / "z.svg").exists()
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["--environment", "spring", "--range", "m_e", "0", "1"],
+        ["--environment", "5", "--range", "0", "1"],
+        ["--environment", "5", "--up-to", "1"],
+    ],
+)
+def test_ranges_of_what_has_a_value_or_is_not_there_are_refused(loop, capsys, arguments):
+    assert run(["contact", "loop.toml", *arguments]) == 2
+    assert "SF902" in capsys.readouterr().err
+
+
+def test_a_parameter_that_the_wall_leaves_without_effect_is_said(loop, capsys):
+    # Nothing moves where x is held, so no pole depends on K.
+    (loop / "wall.toml").write_text(LAGGED, encoding="utf-8")
+    assert run(["contact", "wall.toml", "--environment", "wall", "--over", "K"]) == 3
+    assert "ask without --over K" in capsys.readouterr().err

@@ -34,8 +34,19 @@ def test_the_figure_is_drawn_by_plot(wall):
 
 
 def test_an_unknown_port_is_refused_with_the_nearest(wall, capsys):
-    assert run(["passivity", "wall.toml", "--port", "xx"]) == 2
-    assert "there is no node 'xx'" in capsys.readouterr().err
+    assert run(["passivity", "wall.toml", "--port", "tp"]) == 2
+    assert "did you mean 'tip'?" in capsys.readouterr().err
+
+
+def test_ports_are_listed_where_none_is_near(wall, capsys):
+    assert run(["passivity", "wall.toml", "--port", "gripper"]) == 2
+    assert "ports: tip; nodes: x" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("ends", [["0", "10"], ["K", "0", "10"]])
+def test_a_range_of_what_is_not_asked_for_is_refused(wall, capsys, ends):
+    assert run(["passivity", "wall.toml", "--range", *ends]) == 2
+    assert "--over" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("other", [["--over", "K"], ["--port", "tip", "--port", "x"]])

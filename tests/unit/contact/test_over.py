@@ -1,7 +1,10 @@
 """Passive values of parameters, against bounds derived by hand."""
 
+from itertools import count
+
 import pytest
 
+from symflex.budget import Budget
 from symflex.contact.over import passive_over
 from symflex.errors import UsageError
 from symflex.options import PassivityOptions
@@ -57,3 +60,13 @@ def test_two_parameters_make_slices():
 def test_a_parameter_twice_is_refused():
     with pytest.raises(UsageError, match="each once"):
         passive_over(machine(), PassivityOptions(("tip",), ("K", "K")))
+
+
+def test_slices_that_are_known_when_the_time_ends_are_kept():
+    asked = PassivityOptions(("tip",), ("K", "tau"), None, (("K", 0, 100), ("tau", 0.05, 0.25)))
+    with Budget(seconds=500, clock=count().__next__).entered():
+        chart = passive_over(machine(), asked)
+    assert not chart.certified
+    assert "of 21 values of 'tau'" in chart.missing[0]
+    for tau, values in chart.slices:
+        assert ends(values)[0][1] == pytest.approx(min(1 / float(tau), 100), rel=1e-9)
