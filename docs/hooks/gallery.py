@@ -1,23 +1,29 @@
 """The gallery, and formulas in the pages, derived while the site is built: nothing in them can lag behind.
 
 A page asks with a comment on a line of its own: ``<!-- gallery -->``; or for one formula, which the page has
-in LaTeX for those who read it in a clone, ``<!-- formula: FILE OUT/IN -->`` to ``<!-- end of formula -->``.
+in LaTeX for those who read it in a clone, ``<!-- formula: FILE OUT/IN -->`` to ``<!-- end of formula -->``,
+where FILE is one of the repository or one that the page titles.
 An equation as specifications write it, ``<!-- equation: y = x^2 -->``, is typeset likewise, and within a
 sentence what stands between backticks after ``<!-- math -->``. On a page with ``<!-- drawings -->`` every
 specification is followed by its drawing. ``<!-- elements -->`` is the catalogue of all elements.
+
+What is derived or drawn is kept in ``.site_cache``, by what it was made from: the program, this file and the
+specification. If only a page changes, nothing is made again.
 """
 
 from __future__ import annotations
 
+import hashlib
 import html
+import pickle
 import re
 import tomllib
 from base64 import b64encode
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 from math import inf
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, TypeVar
 
 from matplotlib import mathtext, textpath
 from mkdocs.structure.files import File, Files
@@ -44,6 +50,7 @@ if TYPE_CHECKING:
     from symflex.model import Model
     from symflex.transfer import AnyBoundFunction, AnyTransferFunction
 
+T = TypeVar("T")
 ROOT: Final = Path(__file__).parents[2]
 MODELS: Final = ROOT / "derivations"
 FONTS: Final = ROOT / "symflex" / "report" / "fonts"
@@ -51,9 +58,13 @@ FOLDERS: Final = {
     "eppinger1988": "One axis of a robot, and what bends in it",
     "eppinger1988/loops": "Loops around it, of position and of force",
     "classics": "Textbooks",
+    "mechatronics": "Drives, loops and machines that touch",
+    "transducers": "Transducers",
     "nonlinear": "Nonlinear equations and energies, about an operating point",
     "tapers": "Members that change along x",
     "frames": "Plane frames",
+    "distributed": "Lines, ducts and pipes",
+    "measured": "Machines that were measured",
 }
 """Sections of the gallery."""
 MOVING: Final = {
@@ -87,6 +98,33 @@ SPECIFICATION: Final = re.compile(
 textpath.MathTextParser = cache(mathtext.MathTextParser)  # type: ignore[attr-defined, assignment]
 
 
+CACHE: Final = ROOT / ".site_cache"
+
+
+@cache
+def program() -> bytes:
+    """Return what identifies the program and this file: a digest of their text."""
+    sources = [
+        *sorted((ROOT / "symflex").rglob("*.py")),
+        *sorted((ROOT / "symflex").rglob("*.js")),
+        Path(__file__),
+    ]
+    return hashlib.sha256(b"".join(path.read_bytes() for path in sources)).digest()
+
+
+def kept(made_from: str | bytes, make: Callable[[], T]) -> T:
+    """Return what is made from a text by the program as it is, from an earlier build if there is one."""
+    text = made_from if isinstance(made_from, bytes) else made_from.encode("utf-8")
+    path = CACHE / hashlib.sha256(program() + text).hexdigest()
+    if path.exists():
+        found: T = pickle.loads(path.read_bytes())
+        return found
+    result = make()
+    CACHE.mkdir(exist_ok=True)
+    path.write_bytes(pickle.dumps(result))
+    return result
+
+
 @dataclass(frozen=True)
 class Entry:
     """A model in the gallery."""
@@ -115,16 +153,22 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
         text = (MODELS / entry.path).read_bytes()
         files.append(File.generated(config, f"gallery/{entry.stem}.toml", content=text))
         if entry.path in MOVING:
-            model = pipeline.load(MODELS / entry.path)
-            moving = live_page([(model, model.transfer_functions[:FUNCTIONS_SHOWN])], Silent())
+            moving = kept(b"live " + text, partial(moving_page, entry.path))
             files.append(File.generated(config, f"gallery/{entry.stem}.html", content=moving))
         for name, content in entry.figures:
             files.append(File.generated(config, f"gallery/{entry.stem}_{name}.svg", content=content))
     return files
 
 
+def moving_page(path: str) -> str:
+    """Return the page of a model with sliders."""
+    model = pipeline.load(MODELS / path)
+    return live_page([(model, model.transfer_functions[:FUNCTIONS_SHOWN])], Silent())
+
+
 def on_page_markdown(markdown: str, **_: object) -> str:
     """Put the gallery and the formulas where a page asks for them."""
+    titled = dict(SPECIFICATION.findall(markdown))
     if "<!-- gallery -->" in markdown:
         markdown = markdown.replace("<!-- gallery -->", "\n".join(_sections()))
     if "<!-- elements -->" in markdown:
@@ -135,12 +179,18 @@ def on_page_markdown(markdown: str, **_: object) -> str:
         )
     # Markdown would take <math> at the start of a line for a paragraph of its own.
     markdown = INLINE.sub(lambda match: f"<span>{typeset(match[1], is_display=False)}</span>", markdown)
-    return FORMULA.sub(lambda match: TYPESET[match[1]](match[2]), markdown)
+    return FORMULA.sub(lambda match: _typeset_row(match[1], match[2], titled), markdown)
+
+
+def _typeset_row(kind: str, asked: str, titled: Mapping[str, str]) -> str:
+    if kind == "equation":
+        return equation_html(asked)
+    return kept(f"formula {asked} {titled}", lambda: formula_html(function_of(titled, *asked.split())))
 
 
 def drawing_html(name: str, text: str) -> str:
     """Return the drawing of a specification as a picture."""
-    return picture(pipeline.loads(text), name)
+    return kept(f"drawing {name} {text}", lambda: picture(pipeline.loads(text), name))
 
 
 def picture(model: Model, name: str) -> str:
@@ -154,11 +204,18 @@ def catalogue() -> str:
     """Return all elements as cards: the drawing of each alone, its name and what it is."""
     cards = []
     for name, element in ELEMENTS.items():
-        model = pipeline.loads(alone(element))
-        drawing = picture(replace(model, inputs=model.inputs if element.is_source else (), outputs=()), name)
+        drawing = kept(f"element {alone(element)}", partial(drawn_alone, element))
         link = f'<a href="../spec-language/#{name}"><code>{name}</code></a>'
         cards.append(f"<figure>{drawing}<figcaption>{link} {element.summary}</figcaption></figure>")
     return "\n".join(('<div class="elements">', *cards, "</div>"))
+
+
+def drawn_alone(element: Element) -> str:
+    """Return the drawing of an element without arrows for an input that it does not need."""
+    model = pipeline.loads(alone(element))
+    return picture(
+        replace(model, inputs=model.inputs if element.is_source else (), outputs=()), element.type_name
+    )
 
 
 def alone(element: Element) -> str:
@@ -200,15 +257,9 @@ def equation_html(text: str) -> str:
     return f'<div class="formula"><div class="row">{typeset(text, is_display=True)}</div></div>'
 
 
-TYPESET: Final[Mapping[str, Callable[[str], str]]] = {
-    "formula": lambda asked: formula_html(function_of(*asked.split())),
-    "equation": equation_html,
-}
-
-
-def function_of(path: str, pair: str) -> AnyTransferFunction:
-    """Return a transfer function of a specification in the repository."""
-    model = pipeline.load(ROOT / path)
+def function_of(titled: Mapping[str, str], path: str, pair: str) -> AnyTransferFunction:
+    """Return a transfer function of a specification of the page, or in the repository."""
+    model = pipeline.loads(titled[path]) if path in titled else pipeline.load(ROOT / path)
     return pipeline.derive_all(model, pipeline.pick_pairs(model, [pair]))[0]
 
 
@@ -216,11 +267,18 @@ def function_of(path: str, pair: str) -> AnyTransferFunction:
 def entries() -> tuple[Entry, ...]:
     """Return all models that are solvable, in the order of their sections."""
     paths = [path for folder in FOLDERS for path in sorted((MODELS / folder).glob("*.toml"))]
-    return tuple(entry_of(path) for path in paths if path.name != "claims.toml")
+    shown = [path for path in paths if path.name != "claims.toml"]
+    return tuple(Entry(*kept(_texts_of(path), partial(entry_of, path))) for path in shown)
 
 
-def entry_of(path: Path) -> Entry:
-    """Derive and draw one model."""
+def _texts_of(path: Path) -> bytes:
+    """Return the text of a specification and of those beside it that it may read."""
+    beside = sorted(path.parent.rglob("*.toml"))
+    return b"\0".join([b"entry", path.name.encode("utf-8"), *(each.read_bytes() for each in beside)])
+
+
+def entry_of(path: Path) -> tuple[str, str, str, str, str, tuple[tuple[str, bytes], ...]]:
+    """Derive and draw one model: what an Entry has."""
     model = pipeline.load(path)
     name = path.relative_to(MODELS).as_posix()
     found = pipeline.derive_for_roots(model, model.transfer_functions[:FUNCTIONS_SHOWN])
@@ -228,7 +286,7 @@ def entry_of(path: Path) -> Entry:
     figures = tuple(_figures(model, bounds, is_loop="loops" in name))
     (symbolic,), _ = pipeline.derive_as(model, model.transfer_functions[:1])
     doc = tomllib.loads(path.read_text(encoding="utf-8")).get("doc", "")
-    return Entry(name, model.title, model.source, doc, formula_html(symbolic, LONGEST), figures)
+    return name, model.title, model.source, doc, formula_html(symbolic, LONGEST), figures
 
 
 def _figures(

@@ -12,13 +12,14 @@ import json
 import re
 import sys
 from base64 import b64encode
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from mkdocs.structure.files import File, Files
 
 sys.path.insert(0, str(Path(__file__).parent))  # mkdocs loads each hook alone
-from gallery import formula_html
+from gallery import formula_html, kept
 
 if TYPE_CHECKING:
     from mkdocs.config.defaults import MkDocsConfig
@@ -32,7 +33,9 @@ OUTPUTS: Final[dict[str, str]] = {}
 def on_files(files: Files, config: MkDocsConfig) -> Files:
     """Add a page for every notebook."""
     for path in sorted(NOTEBOOKS.glob("*.ipynb")):
-        page = page_of(path.stem, json.loads(path.read_text("utf-8"))["cells"])
+        text = path.read_text("utf-8")
+        page, outputs = kept(f"notebook {text}", partial(notebook, path.stem, text))
+        OUTPUTS.update(outputs)
         files.append(File.generated(config, f"notebooks/{path.stem}.md", content=page))
     return files
 
@@ -40,6 +43,12 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 def on_page_content(content: str, **_: object) -> str:
     """Put outputs in their places."""
     return PLACE.sub(lambda match: OUTPUTS[match[1]], content)
+
+
+def notebook(stem: str, text: str) -> tuple[str, dict[str, str]]:
+    """Return a notebook in Markdown, and its outputs by their places."""
+    page = page_of(stem, json.loads(text)["cells"])
+    return page, {place: shown for place, shown in OUTPUTS.items() if place.startswith(f"{stem}-")}
 
 
 def page_of(stem: str, cells: list[dict[str, Any]]) -> str:

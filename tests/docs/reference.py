@@ -26,7 +26,7 @@ from symflex.quantities.units import PLAIN_UNITS, PREFIXABLE_UNITS, PREFIXES
 from tests.house.repository import ROOT
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Mapping
 
     from symflex.library.blocks import Block
     from symflex.library.elements import Choice, Element, ParameterPort, Port
@@ -36,34 +36,35 @@ PLACE = re.compile(rf"^(<!-- reference: (\w+)(?: (\w+))? -->)$.*?^{END}$", re.MU
 
 
 FORMULA_END = "<!-- end of formula -->"
+TITLED = re.compile(r'^```toml title="([\w.]+)"\n(.*?)^```$', re.MULTILINE | re.DOTALL)
 FORMULA = re.compile(rf"^(<!-- (formula|equation): (.+) -->)$.*?^{FORMULA_END}$", re.MULTILINE | re.DOTALL)
 
 
 def with_tables(markdown: str) -> str:
     """Return a page with its tables and formulas as the program makes them now."""
     markdown = PLACE.sub(lambda match: f"{match[1]}\n\n{_part(match[2], match[3])}\n\n{END}", markdown)
-    return FORMULA.sub(
-        lambda match: f"{match[1]}\n```math\n{LATEX[match[2]](match[3])}\n```\n{FORMULA_END}", markdown
-    )
+    titled = {block[1]: block[2] for block in TITLED.finditer(markdown)}
+
+    def latex(match: re.Match[str]) -> str:
+        return _equation(match[3]) if match[2] == "equation" else _formula(titled, *match[3].split())
+
+    return FORMULA.sub(lambda match: f"{match[1]}\n```math\n{latex(match)}\n```\n{FORMULA_END}", markdown)
 
 
 def _part(what: str, name: str | None) -> str:
     return command(name) if name else PARTS[what]()
 
 
-def _formula(asked: str) -> str:
-    path, pair = asked.split()
+def _formula(titled: Mapping[str, str], path: str, pair: str) -> str:
     output, source = pair.split("/")
-    return symflex.load(ROOT / path).transfer_function(output, source).latex()
+    model = symflex.loads(titled[path]) if path in titled else symflex.load(ROOT / path)
+    return model.transfer_function(output, source).latex()
 
 
 def _equation(text: str) -> str:
     equation = parse_equation(Text.alone("a page", text))
     writer = Writer({})
     return f"{writer.piece(equation.left).markup} = {writer.piece(equation.right).markup}"
-
-
-LATEX = {"formula": _formula, "equation": _equation}
 
 
 def elements() -> str:
