@@ -288,10 +288,9 @@ class RationalOptions:
         **SHOWN,
         help="product: poles and zeros; modal: residues; state-space: equations with a proved error.",
     )
-    error: float | None = option(
+    error: Stated | None = option(
         None,
         "--error",
-        type=float,
         metavar="SHARE",
         help="state-space: as few modes as this error allows, relative to the static value.",
     )
@@ -997,15 +996,15 @@ def tolerance(given: Stated, flag: str, units: tuple[str, ...], example: str) ->
     return value
 
 
-def share_of(given: Stated, flag: str) -> Fraction:
-    """Return a share of one, given in percent or as a number; SF902 for none between 0 and 1.
+def share_of(given: Stated, flag: str, most: float = 1) -> Fraction:
+    """Return a share of one, given in percent or as a number; SF902 for none between 0 and ``most``.
 
     >>> share_of("1 %", "--short"), share_of(0.1, "--spread")
     (Fraction(1, 100), Fraction(1, 10))
     """
     value = plain_number(given, ("%",))
     is_percent = isinstance(given, str) and "%" in given
-    if not 0 < value < (100 if is_percent else 1):
+    if not 0 < value < (100 * most if is_percent else most):
         raise refused(f"{flag} takes a share such as '1 %', found '{str(given)[:40]}'")
     return Fraction(Decimal(str(value))) / (100 if is_percent else 1)
 

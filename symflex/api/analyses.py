@@ -25,7 +25,7 @@ from symflex.api.root import (
 )
 from symflex.budget import Budget, entered_budget
 from symflex.errors import refused
-from symflex.options import POINTS, Ends, RootsOptions, band_ends, checked_digits, duration
+from symflex.options import POINTS, Ends, RootsOptions, Stated, band_ends, checked_digits, duration
 from symflex.print.sympy import symbols_of
 from symflex.roots.locate import locate
 from symflex.roots.region import region_of
@@ -85,7 +85,7 @@ class Analyses(Plotted):
         return find_h2_norm([[self.bound]], noise_filter(self._stated.model, noise), noise)
 
     def reduced(
-        self, modes: int | None = None, *, error: float | None = None, band: Ends | None = None
+        self, modes: int | None = None, *, error: Stated | None = None, band: Ends | None = None
     ) -> ReducedModel:
         """Return state equations of a few modes, with a proved error over all frequencies.
 
@@ -93,7 +93,7 @@ class Analyses(Plotted):
         ----------
         modes : int, optional
             How many modes are kept; by default as many as the model's ``[analysis]`` gives, else five.
-        error : float, optional
+        error : float or str, optional
             In place of ``modes``: the largest error relative to the static value; as few modes as it takes.
         band : (float, float), optional
             Frequencies of the error [Hz]; by default all. If a mode without damping is left out, by default

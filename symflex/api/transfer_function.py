@@ -559,7 +559,7 @@ def _values(
     """Return the values of a function at a number or an array; SF251 where loss factors do not hold."""
     import numpy as np
 
-    points = np.asarray(s, dtype=complex)
+    points = transfer_layer.points_of(s)
     if not ((points.real == 0) & (points.imag > 0)).all():
         check_causal(model, "a value at another s")
     if points.ndim == 0:

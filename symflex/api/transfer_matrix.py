@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NoReturn
+from operator import index
+from typing import TYPE_CHECKING, Any, NoReturn, SupportsIndex
 
 from symflex import matrices as matrices_layer
 from symflex.api.analyses import band_in_hertz, budget_of
@@ -38,19 +40,25 @@ if TYPE_CHECKING:
     from symflex.analysis.norms.reduced import ReducedModel
     from symflex.figures import AxesGiven
     from symflex.loops.peak import Peak
-    from symflex.options import Ends
+    from symflex.options import Ends, Stated
 
 Place = int | str
 
 
-def _position(place: Place, names: tuple[str, ...], what: str) -> int:
+def _position(place: object, names: tuple[str, ...], what: str) -> int:
     if isinstance(place, str):
         if place not in names:
             raise no_such(what, place, names)
         return names.index(place)
-    if not -len(names) <= place < len(names):
-        raise IndexError(f"there are {len(names)} {what}s, from 0 to {len(names) - 1}")
-    return place % len(names)
+    if isinstance(place, slice | Sequence) or place is Ellipsis:
+        hint = "transfer_matrix(outputs, inputs) has the rows and columns that you name"
+        raise refused(f"an entry has one {what}, not several", hint)
+    if isinstance(place, bool) or not isinstance(place, SupportsIndex):
+        raise refused(f"{what}s have names and whole numbers, not {place!r}"[:200])
+    number = index(place)
+    if not -len(names) <= number < len(names):
+        raise refused(f"there is no {what} {number}: they count from 0 to {len(names) - 1}")
+    return number % len(names)
 
 
 class _Indexed:
@@ -528,7 +536,7 @@ class BoundTransferMatrix(_Indexed):
         return find_h2_norm(self.exact.pairs, noise_filter(self.exact.source.model, noise), noise)
 
     def reduced(
-        self, modes: int | None = None, *, error: float | None = None, band: Ends | None = None
+        self, modes: int | None = None, *, error: Stated | None = None, band: Ends | None = None
     ) -> ReducedModel:
         """Return state equations of a few modes, with a proved error of the matrix and of each pair.
 

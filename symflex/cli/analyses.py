@@ -20,7 +20,7 @@ from symflex.cli.command import (
     refuse_ends,
 )
 from symflex.cli.reporting import answer, emit_json, note, say, show_error, terminal_width, write
-from symflex.errors import BudgetError, refused
+from symflex.errors import BudgetError, ModelError, refused
 from symflex.options import (
     ColocationOptions,
     ContactOptions,
@@ -166,29 +166,35 @@ def _matrix_roots(spec: Specification, given: RootsOptions, chosen: Region | Non
     from symflex.matrices.transfer_matrix import derive_matrix
     from symflex.matrices.zeros import locate_matrix
     from symflex.print.roots import SHORT_DIGITS
+    from symflex.roots.pole_zero_map import SCHEMA
 
     model = spec.load()
     outputs, inputs = names_in(given.outputs), names_in(given.inputs)
     asked = given.digits or model.analysis.digits
-    with ProgressBar() as bar, entered_budget().reporting_to(bar).entered():
-        found = locate_matrix(model, outputs, inputs, chosen, asked or 15)
-    entries: list[str] = []
+    form: dict[str, object] = {}
+    said = ""
     if given.symbolic:
         from symflex.matrices.smith_mcmillan import in_expressions, smith_mcmillan
 
         matrix = derive_matrix(model, outputs, inputs, "expanded")
         entries = [format_expression(e) for e in in_expressions(matrix, smith_mcmillan(matrix))]
+        form = {"smith_mcmillan": entries}
+        said = "\n    ".join(["  Smith-McMillan form, up to factors without s", *entries])
+    try:
+        with ProgressBar() as bar, entered_budget().reporting_to(bar).entered():
+            found = locate_matrix(model, outputs, inputs, chosen, asked or 15)
+    except ModelError as error:
+        if error.diagnostics[0].code != "SF229" or not form:
+            raise
+        note(f"the form alone: {error.diagnostics[0].message}")
+        answer(given.as_json, lambda: {"schema": SCHEMA, **form}, lambda: said)
+        return 0
 
     def text() -> str:
         shown = matrix_roots_text(found, asked or SHORT_DIGITS, terminal_width())
-        title = "\n\n  Smith-McMillan form, up to factors without s" if given.symbolic else ""
-        return shown + title + "".join(f"\n    {entry}" for entry in entries)
+        return f"{shown}\n\n{said}" if said else shown
 
-    def data() -> dict[str, object]:
-        more = {"smith_mcmillan": entries} if given.symbolic else {}
-        return {**found.to_json_dict(), **more}
-
-    answer(given.as_json, data, text)
+    answer(given.as_json, lambda: {**found.to_json_dict(), **form}, text)
     certificate = found.located.certificate
     is_certified = certificate.certified and not (given.strict and found.located.excluded)
     return 5 if certificate.is_exceeded else 0 if is_certified else 4

@@ -245,7 +245,8 @@ def bound_rows(model: Model, given: Rows) -> tuple[tuple[AnyBoundFunction, ...],
 
     if not given.is_matrix:
         refuse_ends(given)
-        return (tuple(pipeline.derive_for_roots(model, [first_pair(model, given.tf, "showing")])),)
+        pair = first_pair(model, given.tf, "showing")
+        return (tuple(pipeline.derive_for_roots(model, [pair], is_explained=True)),)
     from symflex.matrices.transfer_matrix import picked
 
     if given.tf:
@@ -253,5 +254,7 @@ def bound_rows(model: Model, given: Rows) -> tuple[tuple[AnyBoundFunction, ...],
     outputs, inputs = names_in(given.outputs), names_in(given.inputs)
     rows = picked("output", outputs, [o.name for o in model.outputs])
     columns = picked("input", inputs, [i.name for i in model.inputs])
-    every = pipeline.derive_for_roots(model, [(row, column) for row in rows for column in columns])
+    every = pipeline.derive_for_roots(
+        model, [(row, column) for row in rows for column in columns], is_explained=True
+    )
     return tuple(tuple(every[i : i + len(columns)]) for i in range(0, len(every), len(columns)))

@@ -35,6 +35,7 @@ from symflex.transfer import (
     BoundTransferFunction,
     TransferFunction,
     bind_any,
+    points_of,
 )
 from symflex.transfer.bind import Given
 from symflex.transfer.bound import radicals_at
@@ -176,7 +177,7 @@ class BoundMatrix(_PairTable[AnyBoundFunction]):
         """
         import numpy as np  # binding needs none of it
 
-        points = np.asarray(s, dtype=complex)
+        points = points_of(s)
         if not ((points.real == 0) & (points.imag > 0)).all():
             check_causal(self.source.model, "a value at another s")
         values = [pair.each(points.ravel().tolist()) for pair in self.each]
@@ -202,18 +203,21 @@ class BoundMatrix(_PairTable[AnyBoundFunction]):
     def characteristic_loci(self, s: npt.ArrayLike) -> npt.NDArray[np.complex128]:
         """Return the eigenvalues of a square matrix at points in a row, each followed to its nearest one.
 
-        They are of shape (n, points): det(I + L) is the product of one plus each of these.
+        They are of shape (n, points), not numbers at poles. det(I + L) is the product of one plus each.
         """
         import numpy as np
 
         rows, columns = self.shape
         if rows != columns:
             raise refused(f"characteristic loci are of square matrices; this one is {rows} x {columns}")
-        values = np.moveaxis(self.at(np.ravel(s)), -1, 0)
-        loci = np.linalg.eigvals(values).astype(complex)
-        for before, here in pairwise(loci):
+        values = np.moveaxis(self.at(points_of(s).ravel()), -1, 0)
+        is_known = np.isfinite(values).all(axis=(1, 2))
+        known = np.linalg.eigvals(values[is_known]).astype(complex)
+        for before, here in pairwise(known):
             left = list(here)
             here[:] = [left.pop(int(np.argmin(np.abs(np.array(left) - x)))) for x in before]
+        loci = np.full((len(values), rows), np.nan, dtype=complex)
+        loci[is_known] = known
         return loci.T
 
 
@@ -239,11 +243,13 @@ def derive_matrix(
 
 
 def picked(what: str, names: Sequence[str], known: Sequence[str]) -> tuple[str, ...]:
-    """Return the names asked for, once each, or all that are known; SF902 for one that is not."""
-    for name in names:
+    """Return the names asked for, or all that are known; SF902 for one that is not, or named twice."""
+    for place, name in enumerate(names):
         if name not in known:
             raise no_such(what, name, known)
-    return tuple(dict.fromkeys(names)) or tuple(known)
+        if name in names[:place]:
+            raise refused(f"{what} '{name}' is named twice", "a matrix has each row and column once")
+    return tuple(names) or tuple(known)
 
 
 def over_common_denominator(

@@ -63,6 +63,7 @@ from symflex.roots.root import ROUNDING
 from symflex.transfer.of_model import assemble
 
 PASSIVE = "passive, nothing supplies energy"
+SETTLED = "without input no signal grows"  # the same of a model without elements, which has no energy
 COMPRESSED = "compressed members supply energy only to slow motion, which has no pole in the right half-plane"
 OBSERVED = "(output)"  # no name of a specification reads so
 Powers = dict[tuple[int, int], arb]  # coefficients of a polynomial, by the powers of s and of the gain
@@ -159,7 +160,8 @@ def energy_proof(
     closed = structure.closed_at(places)
     if closed is None:
         return EnergyProof()
-    return replace(closed, reason=COMPRESSED if pressed else PASSIVE, limit=limit, has_loop=has_loop)
+    reason = COMPRESSED if pressed else PASSIVE if rest else SETTLED
+    return replace(closed, reason=reason, limit=limit, has_loop=has_loop)
 
 
 def _supplies_nothing(use: PlacedElement, line: Line, signs: Mapping[str, int | None]) -> bool:

@@ -9,10 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import inf, isfinite, nan
+from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
 from symflex.balls import precision, precisions
+from symflex.errors import refused
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
 
 Ball = Callable[[acb], acb]
 
@@ -20,6 +26,21 @@ FIRST_BITS = 96
 LAST_BITS = 6144
 DOUBLE_BITS = 54  # one more than the significand of a double
 NEAR = (200, 220)  # negative powers of two between which behaviour at a point is read off without a number
+
+
+def points_of(s: npt.ArrayLike) -> npt.NDArray[np.complex128]:
+    """Return complex frequencies [rad/s] as an array; SF902 for what are no numbers."""
+    import numpy as np  # values in balls need none of it
+
+    wrong = refused("s is a complex number or an array of them [rad/s]", "such as 2j, or 1j*omega")
+    try:
+        given = np.asarray(s)
+        points = given.astype(complex)
+    except (TypeError, ValueError):
+        raise wrong from None
+    if given.dtype == object and any(x is None for x in given.flat):  # numpy takes it for no number, silently
+        raise wrong
+    return points
 
 
 def double_value(

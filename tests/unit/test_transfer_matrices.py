@@ -20,8 +20,22 @@ def test_entries_are_found_by_number_and_by_name():
     assert G.bind()["X_2", "F_1"](2j) == G[1, 0].bind()(2j)
     with pytest.raises(symflex.errors.UsageError, match="there is no output 'X_3'"):
         G["X_3", "F_1"]
-    with pytest.raises(IndexError, match="there are 2 inputs"):
-        G[0, 2]
+    for key in ((0, 2), (-3, 0), (slice(0, 2), 0), (..., 0), ([0, 1], 0), (1.5, 0), (True, 0), (None, 0), 0):
+        with pytest.raises(symflex.errors.UsageError, match="SF902"):
+            G[key]
+
+
+def test_a_row_is_named_once():
+    with pytest.raises(symflex.errors.UsageError, match="output 'X_1' is named twice"):
+        symflex.loads(TWO_MASSES).transfer_matrix(["X_1", "X_1"])
+
+
+def test_what_is_no_number_is_no_frequency():
+    bound = G.bind()
+    for ask in (bound.at, bound.rga, bound.singular_values, bound.characteristic_loci, bound[0, 0]):
+        for s in ("x", None, [1, "x"], [[1, 2], [3]]):
+            with pytest.raises(symflex.errors.UsageError, match="SF902"):
+                ask(s)
 
 
 def test_sympy_has_numerators_over_one_denominator():

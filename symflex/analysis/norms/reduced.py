@@ -29,10 +29,11 @@ from symflex.analysis.norms.largest import LargestGain, eigenvalue_bound, eigenv
 from symflex.analysis.norms.matrix_peak import matrix_on_axis
 from symflex.analysis.norms.modal_model import ModalModel, modal_model
 from symflex.analysis.rational.laurent import residues_at
-from symflex.balls import precision
+from symflex.balls import ball, precision
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, refused
 from symflex.model.loss_factors import check_causal
 from symflex.model.spec.write import write
+from symflex.options import Stated, share_of
 from symflex.print.notebook import Printed
 from symflex.print.text import Passage
 from symflex.roots import Modes, Position, Root
@@ -41,7 +42,7 @@ from symflex.roots.polynomial_roots import in_order
 from symflex.roots.root import figure, modes_of, overlap, real_json, short_hertz
 from symflex.state_space import Channel
 from symflex.state_space.numeric import BoundState, BoundStateSpace
-from symflex.transfer import AnyBoundFunction
+from symflex.transfer import AnyBoundFunction, points_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -185,7 +186,7 @@ class ReducedModel(Printed):
 
     def at(self, s: npt.ArrayLike) -> npt.NDArray[np.complex128]:
         """Return R, delays included, at complex frequencies [rad/s]: (outputs, inputs) + the shape of s."""
-        points = np.asarray(s, dtype=complex)
+        points = points_of(s)
         arrays, n = self.kept.arrays, len(self.kept.arrays.a)
         flat = points.ravel()
         values = np.empty((*self.exact.shape, flat.size), dtype=complex)
@@ -386,7 +387,7 @@ class _Poles:
 def reduced_model(
     rows: Rows,
     modes: int | None = None,
-    error: float | None = None,
+    error: Stated | None = None,
     band: tuple[float, float] | None = None,
 ) -> ReducedModel:
     """Return state equations of so many modes, or of as few as an error allows, with the error proved.
@@ -395,15 +396,14 @@ def reduced_model(
     value at s = 0, and ``band`` is in Hz. SF902 for a wrong number, SF802 where no principal parts are known,
     SF236 for functions that grow with frequency, SF405 where residues are not known.
     """
-    if modes is not None and modes < 0:
+    if modes is not None and (modes < 0 or modes % 1):
         raise refused(f"the number of modes cannot be {modes}")
-    if error is not None and not 0 < error < inf:
-        raise refused(f"the error must be a positive number, not {error}")
+    share = None if error is None else share_of(error, "--error", inf)
     check_causal(rows[0][0].source.model, "a reduced model")
     first = modes if modes is not None else rows[0][0].source.model.analysis.modes or 5
     poles = _Poles.of(rows, first)
     check_delays(poles.functions, "reduce one pair at a time")
-    if error is None:
+    if share is None:
         found = _of_modes(poles, first, band)
         return replace(found, channels=_channels(found))
     static = _static(poles)
@@ -411,7 +411,7 @@ def reduced_model(
         hint = "give --modes; a function that is zero or infinite at s = 0 has no relative error"
         raise ModelError(Diagnostic("SF402", "there is no static value", None, hint))
     with precision(BITS):
-        wanted = (static * arb(error)).lower()
+        wanted = (static * ball(share)).lower()
     searched = first
     for count in range(MOST_MODES + 1):
         if count > searched and not poles.is_rational:
@@ -420,7 +420,7 @@ def reduced_model(
         found = _of_modes(poles, count, band, enough=float(wanted))
         if found.error.most <= wanted or not poles.kept(count)[1]:
             return replace(found, channels=_channels(found))
-    message = f"more than {MOST_MODES} modes are needed for an error of {error:g}"
+    message = f"more than {MOST_MODES} modes are needed for an error of {float(share):g}"
     raise UncertifiedError(Diagnostic("SF405", message, None, "allow a larger error, or give a --band"))
 
 

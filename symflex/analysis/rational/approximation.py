@@ -32,7 +32,7 @@ from symflex.roots.pole_zero_map import NOT_EXAMINED, StabilityVerdict
 from symflex.state_space import Channel
 from symflex.state_space.cascade import cascade
 from symflex.state_space.numeric import BoundState, BoundStateSpace
-from symflex.transfer import AnyBoundFunction, AnyTransferFunction
+from symflex.transfer import AnyBoundFunction, AnyTransferFunction, points_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -356,7 +356,7 @@ class RationalApproximation(Printed, Approximant, RationalFunction):
 
     def __call__(self, s: npt.ArrayLike) -> complex | npt.NDArray[np.complex128]:
         """Return R at s [rad/s], a number or an array, in double precision."""
-        points = np.asarray(s, dtype=complex)
+        points = points_of(s)
         values = self.evaluator(points)
         return complex(values) if points.ndim == 0 else values
 

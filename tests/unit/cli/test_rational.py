@@ -85,6 +85,13 @@ def test_a_specification_of_the_equations_is_written(several):
     assert several("derive", "reduced.toml").code == 0
 
 
+def test_an_error_is_a_share_with_or_without_percent(several):
+    # y/u has one mode with all of it: the fewest for any error.
+    for share in ("10%", "10 %", "0.1"):
+        done = several("rational", "sum.toml", "--tf", "y/u", "--error", share, "--json")
+        assert done.code == 0 and done.json["modes"] == 1, share
+
+
 def test_norms_of_a_matrix_are_printed(several):
     # By hand: the largest singular value is at 0 Hz; squares of H2 norms are 1/2, 1/100 and 1/1800.
     assert "largest singular value 1.000" in several("peak", "sum.toml", "--matrix").out

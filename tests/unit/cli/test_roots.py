@@ -192,3 +192,16 @@ def test_a_matrix_has_poles_and_zeros_of_its_own(shell):
     assert "no input 'c'" in shell("roots", "two.toml", "--matrix", "--in", "c").err
     assert "for --matrix" in shell("roots", "two.toml", "--in", "a").err
     assert "single pairs" in shell("roots", "two.toml", "--matrix", "--explain").err
+    assert "output 'y' is named twice" in shell("roots", "two.toml", "--matrix", "--out", "y,z,y").err
+
+
+def test_a_matrix_without_values_has_its_smith_mcmillan_form(shell):
+    # By hand: of k/(s + a) and 1/(s + a) side by side, 1/(s + a) is the one invariant factor.
+    (shell.folder / "named.toml").write_text(
+        "symflex = 1\nparameters = { a = {}, k = {} }\ninputs = { u = {}, v = {} }\n"
+        'outputs = { y = "(k*u + v)/(s + a)" }\n'
+    )
+    done = shell("roots", "named.toml", "--matrix", "--letters", "--json")
+    assert done.code == 0 and done.json["smith_mcmillan"] == ["1/(s + a)"]
+    assert "no value: a, k" in done.err
+    assert "SF229" in shell("roots", "named.toml", "--matrix").err

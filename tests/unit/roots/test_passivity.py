@@ -851,6 +851,11 @@ def test_all_poles_of_a_passive_field_are_said_to_be_on_the_axis_or_left_of_it()
     assert found.verdict.word == "marginal"
 
 
+def test_signals_alone_have_no_energy():
+    proof = energy_proof(pipeline.loads('symflex = 1\ninputs = { u = {} }\noutputs = { y = "u/(s + 1)" }'))
+    assert proof.is_passive and "energy" not in proof.reason
+
+
 def test_nothing_is_known_beside_elements():
     model = pipeline.loads(
         HEAD

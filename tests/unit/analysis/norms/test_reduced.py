@@ -106,4 +106,5 @@ def test_what_cannot_be_reduced_is_refused():
     assert "SF402" in refusal(lambda: integrator.reduced(error=0.1))
     growing = symflex.Model(inputs={"u": {}}, outputs={"y": "s*u"}).transfer_function("y", "u").bind()
     assert "SF236" in refusal(lambda: growing.reduced(1))
-    assert "SF902" in refusal(lambda: growing.reduced(-1))
+    for wrong in (-1, 1.5):
+        assert "SF902" in refusal(lambda wrong=wrong: growing.reduced(wrong))
