@@ -42,7 +42,11 @@ if TYPE_CHECKING:
     from symflex.model.reading import Reader
     from symflex.papers.symbols import PaperNotation
 
-ANALYSIS_KEYS = ("band", "data_end", "modes", "digits", "print", "prefer")
+ANALYSIS_KEYS = ("band", "data_end", "modes", "digits", "form", "print", "prefer")
+FORM_NAMES = (
+    *("polynomial", "monic", "constant", "factored", "definitions", "zpk"),
+    *("hyperbolic", "krylov", "vaughan", "frequency"),
+)
 FIGURE_KEYS = ("kind", "of", "gain", "over", "range", "band", "until", "at", "data", "title", "doc")
 OF_A_LOOP = ("nyquist", "nichols", "sensitivity", "locus")
 FIGURE_KINDS = (
@@ -65,6 +69,7 @@ def read_analysis(reader: Reader, section: TableValue | None) -> Analysis:
         reader.note("SF227", "the data must end above 0 Hz", data_end.value.span, 'as in "1 kHz"')
     prefer = section.get("prefer")
     groups = reader.strings(prefer, "prefer of [analysis]") if prefer else ()
+    form = reader.text(section, "form", "[analysis]")
     return Analysis(
         _band(reader, band) if band else None,
         end,
@@ -72,6 +77,7 @@ def read_analysis(reader: Reader, section: TableValue | None) -> Analysis:
         _count(reader, section, "digits", DIGITS_LIMIT),
         _where(reader, section, "[analysis]", "print") or (),
         tuple(filter(None, (reader.read(parse, group) for group in groups or ()))),
+        form.value if form and _check_among(reader, form, FORM_NAMES, "form") else "",
     )
 
 

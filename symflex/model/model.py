@@ -348,6 +348,7 @@ class Analysis:
     digits: int | None = None
     print: NamedExpressions = ()
     prefer: tuple[Expression, ...] = ()  # dimensionless groups
+    form: str = ""  # in which transfer functions that have it are printed
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,7 +19,14 @@ from typing import Any
 from symflex.library import ParameterPort
 from symflex.library.blocks import BLOCKS, MODEL_BLOCK, Block
 from symflex.library.elements import COMPONENT_DOMAIN, ELEMENTS, Element, Port
-from symflex.model.analysis import ANALYSIS_KEYS, DIGITS_LIMIT, FIGURE_KEYS, FIGURE_KINDS, MODES_LIMIT
+from symflex.model.analysis import (
+    ANALYSIS_KEYS,
+    DIGITS_LIMIT,
+    FIGURE_KEYS,
+    FIGURE_KINDS,
+    FORM_NAMES,
+    MODES_LIMIT,
+)
 from symflex.model.declarations import ASSUMPTIONS
 from symflex.model.headings import FORMAT_VERSION, NEEDED
 from symflex.model.model import INPUT_KINDS, ROOT_QUANTITIES, TRANSFORMER_SYMBOLS
@@ -312,6 +319,7 @@ def _analysis() -> Schema:
         "modes": _count(MODES_LIMIT, "how many modes are computed"),
         "digits": _count(DIGITS_LIMIT, "digits of results"),
         "print": _said({"type": "object", "additionalProperties": VALUE}, "names formulas are printed in"),
+        "form": _said({"enum": [*FORM_NAMES]}, "form in which transfer functions that have it are printed"),
         "prefer": _said({"type": "array", "items": TEXT}, "dimensionless groups to write functions in"),
     }
     keys = {key: own_keys.get(key, {}) for key in ANALYSIS_KEYS}

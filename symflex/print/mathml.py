@@ -16,6 +16,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import starmap
 from typing import Final
 
 from symflex.expressions import (
@@ -35,6 +36,7 @@ from symflex.print.forms import PrintedForm
 from symflex.print.label import LABEL_SIGNS, identifier, numeral, operator, row, symbol, with_scripts, words
 from symflex.print.latex.equation import form_labels, free_names, laws_and_starts, split_sign, varying_names
 from symflex.print.latex.expression import Writer
+from symflex.print.text import shown
 from symflex.print.width import NOTHING, Width
 from symflex.print.writer import (
     MOST_PRIMES,
@@ -263,8 +265,8 @@ def transfer_function_mathml(tf: AnyTransferFunction, form: PrintedForm) -> tupl
     labels = form_labels(tf, form)
     writer = MathmlWriter(labels)
     rows = _formula(tf, form, writer)
-    below = [(label_mathml(name, labels), right) for name, right in form.where]
-    below += [(writer.piece(left).markup, right) for left, right in laws_and_starts(form)]
+    both = [*starmap(shown, form.where), *laws_and_starts(form)]
+    below = [(writer.piece(left).markup, right) for left, right in both]
     rows += [MathRow(left, writer.pieces(right), is_where=True) for left, right in below]
     size = sum(len(r.left) + sum(map(len, r.pieces)) for r in rows)
     return tuple(rows) if size <= LONGEST else None

@@ -80,11 +80,15 @@ def read_back(tf: AnyTransferFunction, form: PrintedForm, digits: int | None = N
 
 
 def read_hidden(
-    tf: AnyTransferFunction, form: PrintedForm, factors: Sequence[tuple[Expression, int]]
+    tf: AnyTransferFunction,
+    form: PrintedForm,
+    factors: Sequence[tuple[Expression, int]],
+    scales: Sequence[Fraction] = (),
 ) -> None:
     """Compare the factors that are said to have cancelled with those that have; SF992 where they differ.
 
-    A factor is one up to a fourth root of 1, and may be that for s to the left, as wavenumbers are roots.
+    A factor is one up to a fourth root of its scale, or of 1, and may be that for s to the left, as
+    wavenumbers are roots.
     """
     if not (tf.is_reduced and tf.hidden):
         return
@@ -94,10 +98,11 @@ def read_hidden(
         try:
             whole = replace(form, num=product_of([e for e, _ in factors]))
             points = _Points(_Reader(tf, whole, probes, None), bits, chosen)
-            for (printed, _), known in zip(factors, tf.hidden, strict=True):
+            every = scales or [Fraction(1)] * len(factors)
+            for (printed, _), known, scale in zip(factors, tf.hidden, every, strict=True):
                 right = probes.values_of(Factored.polynomial(tf.ring, known.polynomial), bits, chosen)
                 for x, y in zip(points.value(printed), right, strict=True):
-                    if (x / y).is_finite() and not ((x / y) ** 4).contains(1):
+                    if (x / y).is_finite() and not ((x / y) ** 4 * ball(scale)).contains(1):
                         raise _DiffersError(format_expression(printed))
         except _DiffersError as error:
             message = f"what cancelled from {tf.name} is not shown, as it is wrong: {error}"

@@ -15,10 +15,12 @@ from symflex.expressions import (
     Derivative,
     Equation,
     Expression,
+    Name,
     Quotient,
     format_expression,
     is_number,
     names,
+    power,
 )
 
 if TYPE_CHECKING:
@@ -36,10 +38,22 @@ def form_text(tf: AnyTransferFunction, form: PrintedForm) -> str:
     whole = form.num if is_number(form.den, 1) else Quotient(form.num, form.den)
     lines = [f"{_left_side(tf, form)} = {format_expression(whole)}"]
     lines += [f"  {form.stability.headline}"] if form.stability else []
-    lines += [f"  where {name} = {format_expression(e)}" for name, e in form.where]
+    both = (map(format_expression, shown(*line)) for line in form.where)
+    lines += [f"  where {left} = {right}" for left, right in both]
     lines += [f"  where {line}" for law in form.laws for line in law_lines(*law)]
     lines += [f"  so {format_expression(left)} = {format_expression(e)}" for left, e in form.closed]
     return "\n".join(lines)
+
+
+def shown(name: str, line: Expression) -> tuple[Expression, Expression]:
+    """Return both sides of the line of a name as authors write it: ``beta^4 = value`` for a fourth root.
+
+    Forms in which it occurs depend on the fourth power alone.
+    """
+    match line:
+        case Call("sqrt", Call("sqrt", value)):
+            return power(Name(name), 4), value
+    return Name(name), line
 
 
 def derive_text(
@@ -75,7 +89,8 @@ def _fraction_lines(
         lines.append(f"{INDENT}{next(words)} {line}")
     for (name, expression), word in zip(form.where, words, strict=False):
         if name not in repeated:
-            lines += hanging(f"{INDENT}{word} {name} = ", expression, width)
+            left, right = shown(name, expression)
+            lines += hanging(f"{INDENT}{word} {format_expression(left)} = ", right, width)
     laws = (line for law in form.laws if law[0] not in repeated for line in law_lines(*law))
     for line, word in zip(laws, words, strict=False):
         first, *more = _lay_out(line, width - len(word) - 3, hanging=len(INDENT))

@@ -91,9 +91,7 @@ def frequency_equations(reader: LetterReader, located: PoleZeroMap) -> list[Symb
         return [SymbolicFactor("", None, note=NO_EQUATION)]
     naming.keep([Q])
     plain = {k.generator: (k.function, k.wavenumber, k.length) for k in tf.kernels.kernels}
-    turning = {
-        g: (f, a.wavenumber, a.length * n) for a, n, functions in page.angles() for f, g in functions.items()
-    }
+    turning = {g: (f, a.wavenumber, a.length) for a, own in page.angles() for f, g in own.items()}
     axes = (
         (_Axis(reader, "omega", page.ring, turning, page.laws(), naming), page.value().factors),
         (_Axis(reader, "sigma", tf.ring, plain, wavenumber_laws(tf), naming), tf.ratio.factors),
@@ -133,7 +131,7 @@ class _Axis:
         """Return the equation of a factor with those of the roots that are its own, or why there is none."""
         used, native = self.ring.used_in([part]), self.reader.tf.ring
         kernels = {g: x for g, x in self.functions.items() if g in used}
-        waves = {w for _, w, _ in kernels.values()} | (used & {*self.reader.tf.kernels.wavenumbers})
+        waves = {w for _, w, _ in kernels.values()} | (used & {*self.laws})
         lengths, silent = [x for _, _, x in kernels.values()], SymbolicFactor(kind, None, note=NO_EQUATION)
         longest = [x for x in lengths if all((y / x).is_constant and y.unit <= x.unit for y in lengths)]
         is_one = len(waves) == 1 and waves <= self.laws.keys() and longest and IMAGINARY not in used

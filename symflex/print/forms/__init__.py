@@ -90,6 +90,11 @@ FORMS: dict[str, Arrange] = {
 
 DECIMAL_FORMS = ("zpk",)  # those that print decimals, to the digits requested
 OF_SUMS = ("hyperbolic", "factored")  # those that may have kernels of two lengths and of their sum
+OF_THEIR_OWN = (
+    "vaughan",
+    "krylov",
+    "frequency",
+)  # those that make functions of their own
 AS_ARRANGED = ("zpk", "frequency")  # those that are not functions of s, or print decimals anyway
 LARGE = 300  # number of expanded terms from which only the closed form is tried: no expanded print is shorter
 CANDIDATES = ("definitions", "factored", "polynomial")
@@ -164,11 +169,14 @@ def _arranged(tf: AnyTransferFunction, form: str | None, digits: int, arranged: 
         raise refused(f"{tf.name} is derived in expanded form", "ask for the nested representation")
     if form is not None and form not in FORMS:
         raise no_such("form", form, FORMS)
-    if form is None and tf.model.analysis.print:
-        from symflex.print.forms.own import own_form  # few models ask for it
+    if form is None:
+        if tf.model.analysis.print:
+            from symflex.print.forms.own import own_form  # few models ask for it
 
-        if (own := _proposed(tf, own_form(tf), arranged)) is not None:
-            return own
+            if (own := _proposed(tf, own_form(tf), arranged)) is not None:
+                return own
+        if (wanted := tf.model.analysis.form) in forms_of(tf):
+            form = wanted
     if not tf.is_rational:
         made = _distributed(tf, form, digits, arranged)
     else:
@@ -190,15 +198,18 @@ def is_unreadable(parts: Sequence[Expression]) -> bool:
 
 def _distributed(tf: TransferFunction, form: str | None, digits: int, arranged: Arranged) -> PrintedForm:
     """Return a form with definitions closed, or with them opened where that is much shorter."""
-    from symflex.print.forms.economical import added, apart, economical  # only with beams
+    from symflex.print.forms.bending import as_in_books  # only with beams
+    from symflex.print.forms.economical import added, economical
 
     def shortest(own: TransferFunction) -> PrintedForm:
         each = economical(own)
-        whole = added(apart(each))
+        of_beams = as_in_books(each)
+        whole = added(of_beams)
         if form is None:
             made = tuple(_drafted(each, whole, arranged))
         else:
-            made = (_made(whole if form in OF_SUMS else each, form, digits, arranged),)
+            own_kernels = whole if form in OF_SUMS else each if form in OF_THEIR_OWN else of_beams
+            made = (_made(own_kernels, form, digits, arranged),)
         return replace(min(made, key=_length), source=own)
 
     closed, opened = arranged.definitions.of(tf), shortest(tf)
@@ -359,7 +370,10 @@ def _candidates(tf: TransferFunction) -> tuple[str, ...]:
     if tf.is_rational and not tf.is_large and (is_long_product(tf.num) or is_long_product(tf.den)):
         candidates = tuple(name for name in CANDIDATES if name != "polynomial")
     elif not tf.is_rational:
-        candidates = tuple(name for name in DISTRIBUTED_CANDIDATES if name in forms_of(tf))
+        own = forms_of(tf)
+        if any(d.kind == "bending" for d in tf.kernels.dispersions):
+            own = tuple(name for name in own if name != "vaughan")  # books have beams in beta
+        candidates = tuple(name for name in DISTRIBUTED_CANDIDATES if name in own)
     return candidates if tf.length <= LARGE else candidates[:1]
 
 

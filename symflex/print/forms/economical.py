@@ -21,7 +21,7 @@ from symflex.algebra import LAPLACE, Factored, Kernel, KernelTable, Ring, compos
 from symflex.algebra.normal_form import NormalForm
 from symflex.print.forms.arrange import with_squares
 from symflex.print.forms.invariants import IMAGINARY, factor_by_factor, in_exponentials, real_powers
-from symflex.print.forms.notation import Angle, angles_of
+from symflex.print.forms.notation import BETA, Angle, angles_of
 from symflex.transfer import TransferFunction
 
 DOUBLINGS = 8  # halvings that are undone at most
@@ -64,7 +64,7 @@ def apart(tf: TransferFunction) -> TransferFunction:
 def _in_two(tf: TransferFunction, angle: Angle) -> TransferFunction | None:
     """Return a function in kernels of two multiples of one angle, None if no two serve."""
     source = tf.ratio.ring
-    other = {f: f"{g} apart" for f, g in angle.kernels.items()}
+    other = {f: f"{g} apart {len(source.names)}" for f, g in angle.kernels.items()}
     ring = Ring((*source.names, *other.values()))
     work = Ring((*ring.names, IMAGINARY))
     sums = [in_exponentials(work, work.taken_over(f), angle) for f, _ in tf.ratio.factors]
@@ -72,7 +72,7 @@ def _in_two(tf: TransferFunction, angle: Angle) -> TransferFunction | None:
     multiples = {abs(n) for coefficients in real for key in coefficients for n in key}
     pairs = [(x, y) for x in range(1, max(multiples, default=0)) for y in range(x + 1, max(multiples) + 1)]
     ways = {pair: way for pair in pairs if (way := _as_sums(multiples, pair)) is not None}
-    if not ways or max(multiples) <= HALVES:
+    if not ways or (max(multiples) <= HALVES and not angle.wavenumber.startswith(BETA)):
         return None
     below = {n for c, (_, e) in zip(real, tf.ratio.factors, strict=True) if e < 0 for key in c for n in key}
 
@@ -121,10 +121,11 @@ def _as_sums(multiples: Collection[int], pair: tuple[int, int]) -> dict[int, tup
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Sum:
-    """A sum of lengths of one wavenumber that is shorter than one of them."""
+    """A sum of lengths of one wavenumber, or the difference of two."""
 
     kernels: Mapping[str, str]  # of the sum, generators by function
     parts: tuple[Mapping[str, str], ...]  # of its lengths
+    sign: int = 1  # -1 for the first length less the second
 
 
 def _without_wavenumbers(tf: TransferFunction) -> TransferFunction:
@@ -149,7 +150,7 @@ def _without_wavenumbers(tf: TransferFunction) -> TransferFunction:
 
 
 def added(tf: TransferFunction) -> TransferFunction:
-    """Return the same function with kernels of sums of its lengths in factors that are shorter so."""
+    """Return the same function with kernels of sums and differences of its lengths where it is shorter so."""
     if any(len(factor) > LARGE for factor, _ in tf.ratio.factors):
         return tf
     used = tf.ratio.ring.used_in(f for f, _ in tf.ratio.factors)
@@ -161,15 +162,17 @@ def added(tf: TransferFunction) -> TransferFunction:
     for wave, lengths in groups.items():
         if len(lengths) > MOST:
             continue
-        for n in range(2, len(lengths) + 1):
-            for parts in combinations(lengths, n):
-                total = sum(parts[1:], parts[0])
-                if _terms(total) < max(map(_terms, parts)):
-                    angle = own[wave, parts[0]]
-                    names = {f: f"{f}[{wave},sum {len(sums)}]" for f in angle.kernels}
-                    own_kernels = (k for k in tf.kernels.kernels if k.generator in angle.kernels.values())
-                    kernels += [replace(k, generator=names[k.function], length=total) for k in own_kernels]
-                    sums.append(_Sum(names, tuple(own[wave, part].kernels for part in parts)))
+        chosen = [c for n in range(2, len(lengths) + 1) for c in combinations(lengths, n)]
+        totals = [(sum(c[1:], c[0]), c, 1) for c in chosen if _is_simpler(sum(c[1:], c[0]), c)]
+        if not totals:
+            pairs = [pair if _is_ahead(*pair) else pair[::-1] for pair in chosen if len(pair) == TWO]
+            totals = [(first - second, (first, second), -1) for first, second in pairs]
+        for total, parts, sign in totals:
+            angle = own[wave, parts[0]]
+            names = {f: f"{f}[{wave},sum {len(sums)}]" for f in angle.kernels}
+            own_kernels = (k for k in tf.kernels.kernels if k.generator in angle.kernels.values())
+            kernels += [replace(k, generator=names[k.function], length=total) for k in own_kernels]
+            sums.append(_Sum(names, tuple(own[wave, part].kernels for part in parts), sign))
     if not sums:
         return tf
     ring = Ring((*tf.ratio.ring.names, *(g for one in sums for g in one.kernels.values())))
@@ -194,7 +197,7 @@ def _over(ring: Ring, table: KernelTable) -> KernelTable:
 
 
 def _put(normal: NormalForm, one: _Sum, k: int, factor: fmpz_mpoly) -> Factored:
-    """Return a factor without the k-th part of a sum, which is the sum less the others."""
+    """Return a factor without the k-th part of a sum, which follows from the sum and the others."""
     ring, part = normal.ring, one.parts[k]
     images: dict[str, fmpz_mpoly] = {}
     for even, odd, sign in (("cosh", "sinh", 1), ("cos", "sin", -1)):
@@ -202,8 +205,9 @@ def _put(normal: NormalForm, one: _Sum, k: int, factor: fmpz_mpoly) -> Factored:
             x, y = (ring.generator(one.kernels[f]) for f in (even, odd))
             for other in (p for p in one.parts if p is not part):
                 c, s = ring.generator(other[even]), ring.generator(other[odd])
+                s = s if one.sign > 0 or k else -s
                 x, y = x * c - sign * (y * s), y * c - x * s
-            images |= {part[even]: x, part[odd]: y}
+            images |= {part[even]: x, part[odd]: y if one.sign > 0 or not k else -y}
     return normal.reduce(ring.replaced(factor, images))
 
 
@@ -215,7 +219,10 @@ def _paired(ring: Ring, one: _Sum, factor: fmpz_mpoly) -> Factored:
         if even not in first:
             continue
         c, s, e, o = (ring.generator(p[f]) for p in (first, second) for f in (even, odd))
-        for left, right, times, joined in ((c * e, s * o, sign, even), (s * e, c * o, 1, odd)):
+        for left, right, times, joined in (
+            (c * e, s * o, sign * one.sign, even),
+            (s * e, c * o, one.sign, odd),
+        ):
             monomials = (left, right, ring.generator(one.kernels[joined]))
             removed, other, put = (tuple(map(int, m.degrees())) for m in monomials)
             for powers, x in list(terms.items()):
@@ -225,6 +232,17 @@ def _paired(ring: Ring, one: _Sum, factor: fmpz_mpoly) -> Factored:
                     del terms[powers], terms[beside]
                     terms[new] = terms.get(new, 0) + x
     return Factored.polynomial(ring, ring.context.from_dict({p: x for p, x in terms.items() if x}))
+
+
+def _is_simpler(total: Factored, parts: Sequence[Factored]) -> bool:
+    """Tell whether a sum of lengths is shorter than one of them, or whole where they are parts of it."""
+    are_parts = all((part / total).is_constant and part.unit.denominator > 1 for part in parts)
+    return _terms(total) < max(map(_terms, parts)) or (are_parts and total.unit == 1)
+
+
+def _is_ahead(first: Factored, second: Factored) -> bool:
+    """Tell whether a difference of lengths is as an author would write it: ``l - a``."""
+    return (_terms(first), len(str(second))) >= (_terms(second), len(str(first)))
 
 
 def _terms(length: Factored) -> int:

@@ -1,17 +1,16 @@
 """The function on the imaginary axis, s = j*omega, in real arithmetic as far as there is no damping.
 
-With ``s = j*omega`` the exponents of an undamped beam are ``+-beta`` and ``+-j*beta``: its Krylov-Duncan
-functions are ``(cosh(q) + cos(q))/2``, ``(sinh(q) + sin(q))/(2*beta)``, ... of ``q = beta*l``.
+With ``s = j*omega`` the kernels of undamped beams are those of :mod:`symflex.print.forms.bending`, and rods,
+shafts and strings have ``cos`` for ``cosh``.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
-from fractions import Fraction
+from collections.abc import Mapping
 
 from flint import fmpz_mpoly
 
-from symflex.algebra import LAPLACE, Dispersion, Factored, Kernel, KernelTable, Ring, by_powers
+from symflex.algebra import LAPLACE, Dispersion, Factored, Kernel, Ring, by_powers
 from symflex.algebra.normal_form import with_image
 from symflex.expressions import (
     Call,
@@ -25,8 +24,9 @@ from symflex.expressions import (
 )
 from symflex.model.model import IMAGINARY as LOSS_UNIT
 from symflex.print.forms.arrange import Arranger, ProductPrinter, Sides, shortest_sides
-from symflex.print.forms.economical import LARGE, angle_doubled, is_half
-from symflex.print.forms.invariants import IMAGINARY, in_krylov_functions, krylov_name
+from symflex.print.forms.bending import as_in_books, in_beta
+from symflex.print.forms.economical import added
+from symflex.print.forms.invariants import IMAGINARY
 from symflex.print.forms.kept import KeptDefinitions
 from symflex.print.forms.naming import Naming
 from symflex.print.forms.notation import (
@@ -34,10 +34,10 @@ from symflex.print.forms.notation import (
     Line,
     angles_of,
     constant_symbols,
+    fourth_root,
     pair_lines,
     plain_printer,
     reachable,
-    speed_squared,
     wave_times_length,
 )
 from symflex.print.forms.printed import NOT_ENTIRE, PrintedForm, lacks
@@ -51,46 +51,31 @@ def frequency_form(tf: TransferFunction) -> PrintedForm:
 
     The imaginary unit is a name with the line ``j = sqrt(-1)``, so the form holds for every complex s.
     """
-    return FrequencyPage(tf).form()
+    return FrequencyPage(added(as_in_books(tf))).form()
 
 
 class FrequencyPage:
     """The ring of real functions of the frequency for one transfer function."""
 
     def __init__(self, tf: TransferFunction) -> None:
-        self._tf = tf
-        bending = tuple(d for d in tf.kernels.dispersions if d.kind == "bending")
-        table = KernelTable(
-            bending, tuple(k for k in tf.kernels.kernels if k.dispersion in bending and k.wavenumber)
-        )
-        converted = in_krylov_functions(tf.ratio.ring, table, tf.ratio)
-        if converted is None:
+        own = in_beta(tf)
+        if own is None:
             raise lacks(tf, "frequency", NOT_ENTIRE)
-        self._change, self._value = converted
-        others = KernelTable(
-            tf.kernels.dispersions, tuple(k for k in tf.kernels.kernels if k not in table.kernels)
-        )
-        self._bent = tuple(group[0] for group in self._change.angles)
-        self._straight = angles_of(others)
-        self._turning = [k for k in others.kernels if k.function == "exp" and self._turns(k)]
-        removed = {k.generator for k in (*table.kernels, *self._turning)}
-        self._arguments = [(i, k) for i, angle in enumerate(self._bent) for k in range(1 + _halvings(angle))]
-        functions = [g for i, k in self._arguments for g in _functions(i, k).values()]
+        self._tf, kernels = own, own.kernels.kernels
+        self._bent = [a for a in angles_of(own.kernels) if a.dispersion.kind == "bending"]
+        self._straight = [a for a in angles_of(own.kernels) if a.dispersion.kind != "bending"]
+        self._turning = [k for k in kernels if k.function == "exp" and self._turns(k)]
+        removed = {k.generator for k in self._turning}
         delays = [f"{f}[{k.generator}]" for k in self._turning for f in ("cos", "sin")]
-        plain = [n for n in tf.ratio.ring.names if n not in removed]
-        self.ring = Ring((*plain, *functions, *delays, IMAGINARY))
-        self._functions = [
-            *(k.generator for k in others.kernels if k not in self._turning),
-            *functions,
-            *delays,
-        ]
+        self.ring = Ring((*(n for n in own.ratio.ring.names if n not in removed), *delays, IMAGINARY))
+        self._functions = [*(k.generator for k in kernels if k not in self._turning), *delays]
 
-    def angles(self) -> list[tuple[Angle, int, dict[str, str]]]:
-        """Return angles, times their length in arguments, and the generators of functions of these."""
-        angles = [(self._bent[i], 2**k, _functions(i, k)) for i, k in self._arguments]
+    def angles(self) -> list[tuple[Angle, Mapping[str, str]]]:
+        """Return angles and the generators of their functions."""
+        angles: list[tuple[Angle, Mapping[str, str]]] = [(angle, angle.kernels) for angle in self._bent]
         for angle in self._straight:
             even, odd = ("cosh", "sinh") if self._grows(angle) else ("cos", "sin")
-            angles.append((angle, 1, {even: angle.kernels["cosh"], odd: angle.kernels["sinh"]}))
+            angles.append((angle, {even: angle.kernels["cosh"], odd: angle.kernels["sinh"]}))
         return angles
 
     @staticmethod
@@ -108,18 +93,8 @@ class FrequencyPage:
 
     def value(self) -> Factored:
         """Return the function in the ring of the page, whose s is the frequency."""
-        value = Factored.number(self.ring, self._value.unit)
-        turns = 0
-        waves = {
-            str(self._change.ring.generator(d.wavenumbers[0])): d for d in self._change.table.dispersions
-        }
-        for factor, exponent in self._value.factors:
-            if (wave := waves.get(str(factor))) is not None:
-                # 4 mu^4 = -beta^4; what is left of the wavenumber is a power of that.
-                assert exponent % 4 == 0
-                beta = Factored.generator(self.ring, wave.wavenumbers[0])
-                value = value * beta**exponent * Fraction(-1, 4) ** (exponent // 4)
-                continue
+        value, turns = Factored.number(self.ring, self._tf.ratio.unit), 0
+        for factor, exponent in self._tf.ratio.factors:
             image, times = self._real(factor)
             value, turns = value * image**exponent, turns + times * exponent
         return self._turned(value, turns)
@@ -143,10 +118,9 @@ class FrequencyPage:
 
     def _real(self, factor: fmpz_mpoly) -> tuple[Factored, int]:
         """Return a polynomial on the axis, and the power of the imaginary unit that all of it bore."""
-        source, ring = self._change.ring, self.ring
-        lowered, scale = self._lowered(factor)
+        ring, source = self.ring, self._tf.ratio.ring
         j = ring.generator(IMAGINARY)
-        images = {n: ring.generator(n) for n in ring.names}
+        images = {n: ring.generator(n) for n in source.names if n in ring.index}
         images[LAPLACE] = j * images[LAPLACE]
         if self._tf.model.imaginary and LOSS_UNIT in images:
             images[LOSS_UNIT] = j
@@ -162,74 +136,19 @@ class FrequencyPage:
         for kernel in self._turning:
             c, s = (ring.generator(f"{f}[{kernel.generator}]") for f in ("cos", "sin"))
             images[kernel.generator] = c - j * s
-        for i in range(len(self._bent)):
-            ch, sh, co, si = (ring.generator(g) for g in _functions(i).values())
-            for order, image in enumerate((ch + co, sh + si, ch - co, sh - si)):
-                images[krylov_name(i, order)] = image
-        zero = ring.constant(0)
-        work = lowered.compose(*(images.get(n, zero) for n in source.names), ctx=ring.context)
-        work = self.reduced(work)
+        work = self.reduced(factor.compose(*(images[n] for n in source.names), ctx=ring.context))
         parts = by_powers(ring, work, ring.index[IMAGINARY])
         if set(parts) == {1}:
-            return self._in_whole_lengths(parts[1]) * scale, 1
-        return self._in_whole_lengths(work) * scale, 0
-
-    def _in_whole_lengths(self, work: fmpz_mpoly) -> Factored:
-        """Return a polynomial in functions of twice a half length, where all of it can be so written."""
-        ring, halvings = self.ring, 0
-        for i, k in self._arguments:
-            half, whole = _functions(i, k), _functions(i, k + 1)
-            is_used = any(int(work.degrees()[ring.index[g]]) for g in half.values())
-            if not is_used or (i, k + 1) not in self._arguments or len(work) > LARGE:
-                continue
-            doubled = angle_doubled(ring, work, replace(self._bent[i], kernels=half))
-            if doubled is None:
-                continue
-            images = {g: ring.generator(whole[f]) for f, g in half.items()}
-            work, halvings = self.reduced(ring.replaced(doubled[0], images)), halvings + doubled[1]
-        return Factored.polynomial(ring, work) / Factored.number(ring, 2) ** halvings
-
-    def _lowered(self, factor: fmpz_mpoly) -> tuple[fmpz_mpoly, Factored]:
-        """Return a polynomial in ``2*beta^m*K_m`` and ``beta^4``, and what it is multiplied by."""
-        source = self._change.ring
-        waves = [source.index[d.wavenumbers[0]] for d in self._change.table.dispersions]
-        owner = [
-            (source.index[krylov_name(i, order)], order, source.index[angle.wavenumber])
-            for i, angle in enumerate(self._bent)
-            for order in range(4)
-        ]
-        terms = []
-        for monomial, coefficient in factor.terms():
-            m = [int(e) for e in monomial]
-            value = Fraction(int(coefficient))
-            for k, order, w in owner:
-                value /= 2 ** m[k]
-                m[w] -= order * m[k]
-            for w in waves:
-                value *= Fraction(-1, 4) ** (int(monomial[w]) // 4)
-            terms.append((m, value))
-        least = {w: min(m[w] for m, _ in terms) for w in waves}
-        below = 1
-        for _, value in terms:
-            below = max(below, value.denominator)
-        lowered: dict[tuple[int, ...], int] = {}
-        for m, value in terms:
-            for w in waves:
-                m[w] -= least[w]
-            lowered[tuple(m)] = int(value * below)
-        scale = Factored.number(self.ring, Fraction(1, below))
-        for w in waves:
-            scale = scale * Factored.generator(self.ring, source.names[w]) ** least[w]
-        return source.context.from_dict(lowered), scale
+            return Factored.polynomial(ring, parts[1]), 1
+        return Factored.polynomial(ring, work), 0
 
     def reduced(self, work: fmpz_mpoly) -> fmpz_mpoly:
         """Use ``j^2 = -1``, ``sin^2 = 1 - cos^2`` and ``sinh^2 = cosh^2 - 1``."""
         ring = self.ring
         squares = {IMAGINARY: ring.constant(-1)}
-        for i, k in self._arguments:
-            own = _functions(i, k)
-            squares[own["sinh"]] = ring.generator(own["cosh"]) ** 2 - 1
-            squares[own["sin"]] = 1 - ring.generator(own["cos"]) ** 2
+        for angle in self._bent:
+            squares[angle.kernels["sinh"]] = ring.generator(angle.kernels["cosh"]) ** 2 - 1
+            squares[angle.kernels["sin"]] = 1 - ring.generator(angle.kernels["cos"]) ** 2
         for angle in self._straight:
             c = ring.generator(angle.kernels["cosh"])
             squares[angle.kernels["sinh"]] = c * c - 1 if self._grows(angle) else 1 - c * c
@@ -246,13 +165,9 @@ class FrequencyPage:
 
     def _on_axis(self, value: Factored) -> Factored:
         """Return a value of s and the parameters at ``s = j*omega``."""
-        source, ring = value.ring, self.ring
-        result, turns = Factored.number(ring, value.unit), 0
-        for factor, exponent in value.factors:
-            embedded = factor.compose(
-                *(self._change.ring.generator(n) for n in source.names), ctx=self._change.ring.context
-            )
-            image, times = self._real(embedded)
+        result, turns = Factored.number(self.ring, value.unit), 0
+        for factor, exponent in value.over(self._tf.ratio.ring).factors:
+            image, times = self._real(factor)
             result, turns = result * image**exponent, turns + times * exponent
         return self._turned(result, turns)
 
@@ -264,7 +179,7 @@ class FrequencyPage:
                 (w,) = d.wavenumbers
                 beta = Factored.generator(self.ring, w)
                 c0 = self._on_axis(d.characteristic[0])
-                one = beta**4 / -c0 if d.kind == "bending" else beta**2 / c0
+                one = beta**4 / c0 * 4 if d.kind == "bending" else beta**2 / c0
                 if not one.depends_on(IMAGINARY):
                     laws[w] = one
         return laws
@@ -279,10 +194,10 @@ class FrequencyPage:
         lengths = plain_printer(tf)
         waves = [w for d in tf.kernels.dispersions for w in d.wavenumbers]
         symbols |= {w: Name(n) for w, n in zip(waves, naming.take("beta", len(waves)), strict=True)}
-        functions = [f for f in self.angles() if used.intersection(f[2].values())]
-        products = [wave_times_length(lengths, symbols[a.wavenumber], a.length * n) for a, n, _ in functions]
+        functions = [f for f in self.angles() if used.intersection(f[1].values())]
+        products = [wave_times_length(lengths, symbols[a.wavenumber], a.length) for a, _ in functions]
         arguments, lines = _short_or_named(products, "q", naming)
-        for q, (_, _, own) in zip(arguments, functions, strict=True):
+        for q, (_, own) in zip(arguments, functions, strict=True):
             symbols |= {g: Call(f, q) for f, g in own.items()}
         rates = [
             k.dispersion.shift * k.length / Factored.generator(k.length.ring, LAPLACE) for k in self._turning
@@ -310,12 +225,7 @@ class FrequencyPage:
         c = dispersion.characteristic
         match dispersion.kind:
             case "bending":
-                square = speed_squared(dispersion)
-                if square is None:
-                    return [(named[0], Call("sqrt", axis.square_root(-self._on_axis(c[0]))))]
-                (a,) = naming.take("a")
-                root = plain_printer(self._tf).square_root(square)
-                return [(named[0], Call("sqrt", quotient(symbols[LAPLACE], Name(a)))), (a, root)]
+                return [(named[0], fourth_root(axis.quotient(self._on_axis(c[0] / 4))))]
             case "wave":
                 return [(named[0], axis.square_root(self._on_axis(c[0])))]
             case "pair":
@@ -323,20 +233,6 @@ class FrequencyPage:
                 (delta,) = naming.take("delta")
                 return pair_lines(named, delta, naming, printed, on_axis=True)
         return []
-
-
-def _functions(angle: int, doublings: int = 0) -> dict[str, str]:
-    """Return the generators of the functions of an angle, doubled some times."""
-    times = f"*{2**doublings}" if doublings else ""
-    return {f: f"{f}[{angle}{times}]" for f in ("cosh", "sinh", "cos", "sin")}
-
-
-def _halvings(angle: Angle) -> int:
-    """Return how often the length is halved in what stands in the model."""
-    length, times = angle.length, 0
-    while is_half(length):
-        length, times = length * 2, times + 1
-    return times
 
 
 def _short_or_named(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import count
+from typing import Final
 
 from symflex.algebra import LAPLACE, Dispersion, Factored, Kernel, KernelTable, Ring
 from symflex.expressions import (
@@ -30,6 +31,7 @@ from symflex.print.forms.naming import Naming
 from symflex.transfer import TransferFunction
 
 Line = tuple[str, Expression]
+BETA: Final = "beta"  # the wavenumber of a beam of which :mod:`symflex.print.forms.bending` makes functions
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -89,7 +91,8 @@ def notation_of(
     for q, angle in zip(arguments, angles, strict=True):
         wave = waves.symbols[angle.wavenumber]
         sharing = [a for a in angles if a.wavenumber == angle.wavenumber]
-        if len(sharing) == 1 and angle.wavenumber not in used and angle.dispersion.kind != "pair":
+        is_alone = len(sharing) == 1 and angle.wavenumber not in used
+        if is_alone and angle.dispersion.kind != "pair" and not angle.wavenumber.startswith(BETA):
             root = next(e for n, e in waves.lines if Name(n) == wave)
             waves = Notation(waves.symbols, tuple(line for line in waves.lines if Name(line[0]) != wave))
             lines.append((q, times_length(printer, root, angle.length)))
@@ -180,7 +183,12 @@ def wave_notation(tf: TransferFunction, dispersions: Iterable[Dispersion], namin
             by_kind[dispersion.kind].append(dispersion)
     symbols: dict[str, Expression] = {}
     lines: list[Line] = []
-    bending = by_kind["bending"]
+    of_beta, bending = (
+        [d for d in by_kind["bending"] if d.wavenumbers[0].startswith(BETA) is own] for own in (True, False)
+    )
+    for name, d in zip(naming.take(BETA, len(of_beta)), of_beta, strict=True):
+        symbols[d.wavenumbers[0]] = Name(name)
+        lines.append((name, fourth_root(printer.quotient(d.characteristic[0] / 4))))
     lossless = [d for d in bending if speed_squared(d) is not None]
     speeds = dict(zip(lossless, naming.take("a", len(lossless)), strict=True))
     for name, d in zip(naming.take("mu", len(bending)), bending, strict=True):
@@ -206,6 +214,11 @@ def wave_notation(tf: TransferFunction, dispersions: Iterable[Dispersion], namin
         symbols |= {coefficient_name(position, n): Name(own[-1 - n // 2][0]) for n in (0, 2)}
         lines += own
     return Notation(symbols, tuple(lines))
+
+
+def fourth_root(value: Expression) -> Expression:
+    """Return the fourth root of a value."""
+    return Call("sqrt", Call("sqrt", value))
 
 
 def pair_lines(

@@ -297,7 +297,8 @@ class SumSigns:
         may_turn = below > len(terms) and (has_s or not has_number)
         may_turn |= not has_s and below == len(terms) and (self.turns or has_number)
         sign = self._sign(whole) if may_turn else 0
-        is_negative = sign < 0 if sign else below == 2 * len(terms)
+        # Where no sign is known, fewer minus signs.
+        is_negative = sign < 0 if sign else below > len(terms) if may_turn else below == 2 * len(terms)
         ordered = map(self._added, _led(self._gathered(turned if is_negative else terms)))
         total = sum_of(_real_first([*ordered]))
         return negative(total) if is_negative else total
@@ -591,7 +592,8 @@ def _through_argument(form: PrintedForm, argument: str, wave: Name) -> PrintedFo
     ordered = sorted(factors, key=lambda base: (base != S, isinstance(base, Call)))
     line = of_powers(scale, {base: factors[base] for base in ordered})
     others = [num, den, *(e for name, e in lines.items() if name != argument)]
-    is_shorter = length(line) + LINE <= length(lines[argument], own)
+    is_fourth_root = isinstance(own, Call) and isinstance(own.argument, Call)
+    is_shorter = length(line) + LINE <= length(lines[argument], own) and not is_fourth_root
     if is_shorter and not any(wave in names(e) for e in others):
         lines[argument] = line
         del lines[wave.name]

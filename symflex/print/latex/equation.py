@@ -14,6 +14,7 @@ from symflex.print.forms.printed import functions_in
 from symflex.print.label import labels_of, symbol
 from symflex.print.latex.expression import Writer, break_lines
 from symflex.print.latex.page import NARROWEST_MM
+from symflex.print.text import shown
 from symflex.print.width import EM_MM, FRACTION_EDGES, MINUS, QUAD, RELATION
 from symflex.print.writer import ExpressionWriter, Style, Written
 from symflex.transfer import AnyTransferFunction
@@ -250,7 +251,8 @@ def _where_rows(equations: Sequence[_Sides], writer: Writer, width: float | None
 
 def _defined(where: Sequence[tuple[str, Expression]], writer: Writer) -> list[_Sides]:
     """Return both sides of definitions of names."""
-    return [((label := writer.label(name)).latex, label.width, e) for name, e in where]
+    sides = (shown(*line) for line in where)
+    return [((piece := writer.piece(left)).markup, piece.width, right) for left, right in sides]
 
 
 def laws_and_starts(form: PrintedForm) -> Iterator[tuple[Expression, Expression]]:

@@ -116,9 +116,10 @@ class Point:
                 self._exponentials[key] = pow(e, a, PRIME) * pow(z, b, PRIME) % PRIME
 
     def _learn_sums(self, halves, *, circular):
-        """Know the exponentials of sums of arguments, which forms may be written in."""
+        """Know the exponentials of sums of arguments and of differences, which forms may be written in."""
+        both = [(x, -y) for pair in combinations(halves, 2) for x, y in (pair, pair[::-1])]
         for n in range(2, min(len(halves), 4) + 1):
-            for parts in combinations(halves, n):
+            for parts in (*combinations(halves, n), *both * (n == 2)):
                 for a in range(-REACH, REACH + 1):
                     for b in range(-REACH, REACH + 1) if circular else (0,):
                         turn, value = a + b * UNIT, 1

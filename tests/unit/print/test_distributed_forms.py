@@ -9,8 +9,9 @@ import mpmath
 import pytest
 
 from symflex import pipeline
-from symflex.errors import UsageError
+from symflex.errors import SpecError, UsageError
 from symflex.expressions import Call, Name, format_expression, quotient
+from symflex.model.analysis import FORM_NAMES
 from symflex.print import forms
 from symflex.print.forms import FORMS, hidden_expressions, print_form, with_hidden
 from symflex.print.forms.arranged import Arranged
@@ -75,7 +76,7 @@ def test_definitions_stay_closed_in_every_form_of_a_beam():
     for form in NAMED:
         shown = printed("beam with definitions", 0, form)
         text = " ".join(format_expression(e) for e in (shown.num, shown.den, *(e for _, e in shown.where)))
-        assert "sqrt(EI/load)" in text, form
+        assert re.search(r"EI/load|load\*(s|omega)\^2/EI", text), form
         assert text.count("E*I") == text.count("rho*A") == 1, form  # in their own lines
 
 
@@ -145,6 +146,16 @@ def test_vaughans_forms_of_the_mobilities_are_the_papers_with_two_misprints_corr
 
 # A fact: the function of a case in a form, and what is printed above and below where it says so.
 SHOWN = {
+    # The same denominator in s: beta^4 = rho A omega^2/(E I) = -rho A s^2/(E I).
+    "a cantilever has it in s, too, unless another form is asked for": (
+        ("clamped_free", "W_tip/F", None),
+        "cosh(q)*sin(q) - sinh(q)*cos(q)",
+        "E*I*beta^3*(cosh(q)*cos(q) + 1)",
+    ),
+    # Rao 2007, section 11.5.1: sin sinh of a beam on two supports.
+    "a beam pinned at both ends has sinh times sin": (
+        ("pinned_pinned", "theta_far/tau", None), None, "2*E*I*beta*sinh(q_1)*sin(q_1)",
+    ),
     # Krylov-Duncan theory: free poles at tan + tanh = 0, colocated zeros at cos cosh = -1.
     "the frequency form is real but for one factor": (
         ("sliding_free_beam", "V_act/F", "frequency"),
@@ -158,14 +169,11 @@ SHOWN = {
         "E*I*beta^3*(cosh(beta*l)*cos(beta*l) + 1)",
     ),
     "which stays whole where the numerator needs half the length": (
-        ("clamped_free", "W_mid/F", "frequency"), None, "E*I*beta^3*(cosh(beta*l)*cos(beta*l) + 1)",
+        ("clamped_free", "W_mid/F", "frequency"), None, "2*E*I*beta^3*(cosh(beta*l)*cos(beta*l) + 1)",
     ),
     # K_0 of l is the numerator: the tip and the slider move alike where cos cosh = 0.
     "Krylov-Duncan functions of the free beam": (
         ("sliding_free_beam", "V_tip/F", "krylov"), "K_0", "rho*A*s*(4*mu^4*K_2*K_3 + K_0*K_1)",
-    ),
-    "trigonometric factors are found": (
-        ("free_free", "A_near/F", "factored"), None, "rho*A*(sinh(q_1) - sin(q_1))*(sinh(q_1) + sin(q_1))",
     ),
     # Rao, Vibration of Continuous Systems, chapter 9: the stiffness E A gamma beside the inertia m s^2.
     "a rod with a mass has its stiffness in the characteristic equation": (
@@ -175,11 +183,11 @@ SHOWN = {
         ("delay and rod", "X_late/u", None), "K*exp(-2*T*s)*tanh(q)", None
     ),
 }  # fmt: skip
-WAVENUMBER = ["mu = sqrt(s/(2*a))", "a = sqrt(E*I/(rho*A))"]
+WAVENUMBER = "beta = sqrt(sqrt(-rho*A*s^2/(E*I)))"
 LINES = {
-    "arguments are explained by the wavenumber and that by the speed": (
+    "arguments are explained by the wavenumber": (
         ("sliding_free_beam", "V_tip/F"),
-        ["q = mu*l", *WAVENUMBER],
+        ["q = beta*l", WAVENUMBER],
     ),
     "a rod's wavenumber is taken out of its root": (
         ("rod_tip_mass", "X_tip/F"),
@@ -187,14 +195,17 @@ LINES = {
     ),
     "damping stays under the root": (
         ("damped beam on a foundation", "X/F"),
-        ["q_1 = mu*l", "mu = sqrt(sqrt((rho*A*s^2 + c_f*s + k_f)/(E*I*(eta*s + 1)))/2)"],
+        ["q_1 = beta*l", "beta = sqrt(sqrt(-(rho*A*s^2 + c_f*s + k_f)/(E*I*(eta*s + 1))))"],
     ),
     # The model's other output is at midspan.
     "a function of whole lengths is not printed in halves": (
         ("clamped_free", "W_tip/F"),
-        ["q = mu*l", *WAVENUMBER],
+        ["q = beta*l", WAVENUMBER],
     ),
-    "a function of half a length is": (("clamped_free", "W_mid/F"), ["q = mu*l/2", *WAVENUMBER]),
+    "a function of half a length has that beside the whole": (
+        ("clamped_free", "W_mid/F"),
+        ["q_1 = beta*l/2", "q_2 = beta*l", WAVENUMBER],
+    ),
 }
 
 
@@ -253,15 +264,16 @@ def hidden_lines(tf, form):
 def test_hidden_factors_bear_the_arguments_of_the_form_or_twice_these():
     # Antisymmetric modes of a beam clamped at both ends, which a uniform load does not drive.
     tf = case("clamped_clamped", "M_end/p")
-    assert hidden_lines(tf, "hyperbolic") == ["  hidden: sinh(q) - sin(q) cancelled"]
-    assert "q = mu*l/2" in lines(tf, "krylov")
-    assert hidden_lines(tf, "krylov") == ["  hidden: sinh(2*q) - sin(2*q) cancelled"]
+    # By hand: cosh(x)*sin(x) - sinh(x)*cos(x) of x = beta*l/2, tan(x) = tanh(x) (Rao 2007, table 11.1).
+    hidden = "  hidden: cosh(q)*sin(q) - sinh(q)*cos(q) cancelled"
+    assert hidden_lines(tf, "hyperbolic") == [hidden]
+    assert "q = beta*l/2" in lines(tf, "hyperbolic")
 
 
 def test_hidden_factors_bring_the_lines_of_names_that_a_form_lacks():
     tf = case("clamped_clamped", "M_end/p")
     form, ((factor, _),) = with_hidden(tf, print_form(tf, "vaughan"))
-    assert format_expression(factor) == "sinh(q) - sin(q)"
+    assert format_expression(factor) == "cosh(q)*sin(q) - sinh(q)*cos(q)"
     assert "q" in [name for name, _ in form.where]
 
 
@@ -403,7 +415,9 @@ def test_every_form_is_one_of_some_function():
 def test_a_hidden_factor_of_kernels_is_written_out():
     tf = case("sliding_sliding", "V_mid/F")
     printed = [format_expression(e) for e, _ in hidden_expressions(tf)]
-    assert any("cosh(l*sqrt(s/(2*sqrt(E*I/(rho*A))))/2)" in text for text in printed)
+    # By hand: cosh(x)^2 + cos(x)^2 - 1 of x = mu*l/2 is cosh(q)*cos(q) of q = beta*l/2.
+    q = "(sqrt(sqrt(-rho*A*s^2/(E*I)))*l/2)"
+    assert f"cosh{q}*cos{q}" in printed
 
 
 def test_text_keeps_to_80_columns():
@@ -571,8 +585,8 @@ outputs.Y = "m"
 """
     (tf,) = pipeline.derive_all(pipeline.loads(text))
     form, hidden = with_hidden(tf, print_form(tf))
-    assert format_expression(hidden[0][0]) == "cosh(q/2)*sinh(q/2) - cos(q/2)*sin(q/2)"
-    assert [name for name, _ in form.where] == ["q", "mu", "a_1", "A", "I"]
+    assert format_expression(hidden[0][0]) == "cosh(q)*sin(q) - sinh(q)*cos(q)"
+    assert [name for name, _ in form.where] == ["q", "beta", "A", "I"]
 
 
 def test_a_member_cut_at_a_node_prints_with_its_whole_length():
@@ -610,10 +624,12 @@ def test_a_sensor_at_a_fraction_prints_as_one_at_a_length_with_a_name(place):
         print_form(pipeline.derive_all(pipeline.loads(CANTILEVER.format(place=p)))[0]) for p in (place, "x_s")
     )
     top, bottom = place.split("*") if "*" in place else ("1", place)
-    own = f"{top}*mu_1*{bottom}" if top != "1" else f"mu_1*{bottom}"
+    own = f"{top}*beta*{bottom}" if top != "1" else f"beta*{bottom}"
+    rest = f"{int(bottom[2:]) - int(top)}*beta*{bottom}"
 
     def spelled_out(form):
-        lines = {name: format_expression(e).replace("mu_1*x_s", own) for name, e in form.where}
+        lines = {name: format_expression(e).replace("beta*x_s", own) for name, e in form.where}
+        lines = {name: text.replace("beta*(l - x_s)", rest) for name, text in lines.items()}
         sides = format_expression(form.num), format_expression(form.den)
         return [re.sub(r"q_\d", lambda found: lines[found[0]], side) for side in sides]
 
@@ -628,11 +644,12 @@ link = { type = "spring", between = ["b", "d"], k = 3 }
     text = CANTILEVER.replace(", x_s = {{}}", "").format(place="l/4) - arm2.y(l/4")
     (tf,) = pipeline.derive_all(pipeline.loads(text.replace("[inputs.F]", other)))
     arguments = {value for name, value in (line.split(" = ") for line in lines(tf, None)) if name[0] == "q"}
-    assert arguments == {"mu_1*l", "mu_1*l/4", "mu_2*l", "mu_2*l/4"}
+    parts = ("beta_{}*l", "beta_{}*l/4", "3*beta_{}*l/4")
+    assert arguments == {part.format(i) for i in (1, 2) for part in parts}
 
 
 def test_beams_in_a_ratio_of_three_to_seven_print_as_those_of_two_lengths():
-    # By hand: below the bar a cantilever's cosh(x) + cos(x) + 2 of x = q_1 + q_2, opened.
+    # By hand: below the bar a cantilever's cosh(x)*cos(x) + 1 of the whole length x = q_3.
     beam = '{{ type = "beam", between = ["{}"], EI = "EI", rhoA = "mu", l = "{}" }}'
     text = f"""symflex = 1
 parameters = {{ EI = {{}}, mu = {{}}, l = {{}} }}
@@ -644,11 +661,9 @@ outputs.Y = "b"
 """
     (tf,), reason = pipeline.derive_as(model := pipeline.loads(text), model.transfer_functions)
     assert reason == ""
-    num, den = shown(tf)
-    below = "cosh(q_1)*cosh(q_2) + sinh(q_1)*sinh(q_2) + cos(q_1)*cos(q_2) - sin(q_1)*sin(q_2) + 2"
-    assert den == f"8*EI*mu_1^3*({below})"
-    first, second = (f"(cosh({q}) + cos({q}) {sign} 2)" for q, sign in (("q_1", "-"), ("q_2", "+")))
-    assert num == f"{first}*(sinh(q_2) - sin(q_2)) + {second}*(sinh(q_1) - sin(q_1))"
+    _, den = shown(tf)
+    assert den == "2*EI*beta^3*(cosh(q_3)*cos(q_3) + 1)"
+    assert lines(tf, None)[:3] == ["q_1 = 3*beta*l/10", "q_2 = 7*beta*l/10", "q_3 = beta*l"]
 
 
 PLATE = """symflex = 1
@@ -716,3 +731,28 @@ def test_waves_print_as_in_books():
         (tf,) = pipeline.derive_all(pipeline.loads(text))
         form = print_form(tf)
         assert format_expression(quotient(form.num, form.den)) == expected
+
+
+def test_the_form_of_the_specification_is_printed_unless_another_is_asked_for():
+    text = (CLASSICS / "clamped_free.toml").read_text(encoding="utf-8")
+    asked = text.replace("[analysis]", '[analysis]\nform = "vaughan"')
+    tip, *_ = pipeline.derive_all(pipeline.loads(asked))
+    assert print_form(tip).name == "vaughan"
+    assert print_form(tip, "hyperbolic").name == "hyperbolic"
+    with pytest.raises(SpecError, match="there is no form 'vaughn'"):
+        pipeline.loads(asked.replace("vaughan", "vaughn"))
+    assert set(FORM_NAMES) == set(FORMS)
+
+
+def test_a_fourth_root_is_explained_by_its_fourth_power():
+    tip = case("clamped_free", "W_tip/F")
+    form = print_form(tip)
+    assert "beta^4 = -rho*A*s^2/(E*I)" in derive_text([(tip, form)])
+    assert r"\beta^{4} &= -\frac{\rho A s^{2}}{E I}" in transfer_function_latex(tip, form, width_mm=None)
+
+
+def test_kernels_of_two_lengths_are_joined_to_those_of_their_difference():
+    # By hand: the numerator's sinh(beta*x)*cosh(beta*l) - cosh(beta*x)*sinh(beta*l), and the same of sin.
+    (tf,) = pipeline.derive_all(pipeline.loads(CANTILEVER.format(place="x_s")))
+    assert "sinh(q_3) - sin(q_3)" in shown(tf)[0]
+    assert "q_3 = beta*(l - x_s)" in lines(tf, None)

@@ -116,6 +116,8 @@ def test_office_math_reads_as_the_function(name):
             head = nodes[0]
             own = head.tag == f"{M}sSub"
             text = "".join(t.text or "" for t in head.iter(f"{M}t"))
+            if head.tag == f"{M}sSup":  # beta^4 = ...
+                result, text = result**0.25, text.removesuffix("4")
             values[reader.name(head) if own else GREEK.get(text, text)] = result
     bound = symflex.load(ROOT / "derivations" / f"{name}.toml").transfer_function(tf.name).bind()
     assert result == pytest.approx(complex(bound(S)), rel=1e-9)
