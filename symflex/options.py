@@ -94,7 +94,7 @@ class CheckOptions:
     equations: bool = option(
         False,
         "--equations",
-        help="Print the linear equations that [equations] or [energy] become, and the values at rest.",
+        help="Print the linear equations that [equations] or [energy] become, and the values at equilibrium.",
     )
     strict: bool = option(False, "--strict", help="Exit with code 3 if there is a warning.")
 

@@ -254,7 +254,7 @@ class TransferFunction(_Derived):
         >>> from symflex import loads
         >>> loop = loads('symflex = 1\nparameters.T = "2 s"\ninputs.u = {}\noutputs.y = "u/(T*s + 1)"')
         >>> limits = loop.transfer_function("y", "u").limits()
-        >>> limits.expr("s -> 0"), limits.expr("s -> infinity"), limits.row("both meet at").value
+        >>> limits.expr("s -> 0"), limits.expr("s -> infinity"), limits.row("corner frequency").value
         (1, 1/(T*s), 0.5)
         """
         return limits_of(self.exact)

@@ -289,7 +289,7 @@ def _matrix(spec: Specification, given: DeriveOptions) -> int:
 
 
 def _solved_json(model: Model) -> dict[str, object]:
-    """Return the values at rest that were solved for, which few models have."""
+    """Return the values at equilibrium that were solved for, which few models have."""
     if model.operating_point is None:
         return {}
     from symflex.print.motion import solved_json

@@ -425,14 +425,14 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
     const words = (state, f) => {
         const isSure = state.certified.poles && state.certified.zeros, count = state.poles.reduce((n, p) => n + p.multiplicity, 0);
         const isKnown = state.isKnown !== false;
-        one(".roots-label").textContent = isSure ? "proved" : isKnown ? "traced" : "not known";
+        one(".roots-label").textContent = isSure ? "certified" : isKnown ? "traced" : "not known";
         one(".roots-label").classList.toggle("good", isSure);
-        one(".step-label").textContent = !isKnown ? "not known" : f.infinite ? `${count} modes, estimated` : `all ${count} modes, in doubles`;
+        one(".step-label").textContent = !isKnown ? "not known" : f.infinite ? `${count} modes, estimated` : `all ${count} modes, in double precision`;
         one(".why").textContent = [
             f.fixed ? `${f.name} holds the numbers of the specification, so no slider moves it.` : "",
             !isKnown ? `No poles and zeros are known at these values: ${state.why}.`
-                : isSure ? "Every root shown is proved, and none is missing from the window."
-                : `Roots are traced, and not all of them are proved: ${state.why}.`,
+                : isSure ? "Every root shown is certified, and none is missing from the window."
+                : `Roots are traced, and not all of them are certified: ${state.why}.`,
             f.infinite && isKnown ? "The step response is the static part and the modes shown, without those beyond." : "",
         ].filter(Boolean).join(" ");
         stability(state, f);
@@ -440,7 +440,7 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
         one(".accuracy").textContent = `${f.name}: ${f.accuracy}.`;
         one(".modes tbody").replaceChildren(...[...state.poles].sort((a, b) => length(a) - length(b)).map((p, i) => {
             const size = length(p), row = document.createElement("tr"), times = p.multiplicity > 1 ? ` (${p.multiplicity} times)` : "";
-            const how = p.proved ? `proved${p.radius ? `, ± ${short(p.radius, 2)} rad/s` : ""}` : "traced";
+            const how = p.proved ? `certified${p.radius ? `, ± ${short(p.radius, 2)} rad/s` : ""}` : "traced";
             row.append(...[`${i + 1}`, short(isHertz() ? size / TAU : size, 6), size ? short(-p.re / size || 0) : "–", p.re > 0 ? "grows" : p.re ? `${short(-1 / p.re)} s` : "∞",
                 how + times].map((textContent) => Object.assign(document.createElement("td"), { textContent })));
             return row;
@@ -451,12 +451,12 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
         const isMarginal = !f.infinite && state.certified.poles && state.poles.every((p) => (isOrigin(p) && !p.radius) || -p.re > p.radius);
         const isShown = f.hides && !state.isPassive && state.stability === "stable", own = isShown ? "unknown" : state.stability;
         const word = own !== "unknown" ? own : known?.word ?? (isMarginal && !f.hides ? "marginal" : "unknown");
-        const right = Math.max(...state.poles.map((p) => p.re)), sentence = known && own === "unknown" ? `${known.sentence}, proved at the declared values`
-            : word === "marginal" ? "marginal, proved at these values: poles at s = 0, all others in the left half-plane"
-            : word !== "unknown" ? `${word}, proved at these values`
-            : isShown ? "all poles shown lie in the left half-plane, proved; hidden poles, which cancel, may not"
+        const right = Math.max(...state.poles.map((p) => p.re)), sentence = known && own === "unknown" ? `${known.sentence}, certified at the declared values`
+            : word === "marginal" ? "marginal, certified at these values: poles at s = 0, all others in the left half-plane"
+            : word !== "unknown" ? `${word}, certified at these values`
+            : isShown ? "all poles shown lie in the left half-plane, certified; hidden poles, which cancel, may not"
             : state.isPassive ? "no pole lies in the right half-plane: nothing supplies energy, whatever the positive values"
-            : `neither stability nor instability is proved here${state.poles.length ? `: the rightmost poles shown have Re s = ${short(right, 3)} rad/s` : ""}`;
+            : `neither stability nor instability is certified here${state.poles.length ? `: the rightmost poles shown have Re s = ${short(right, 3)} rad/s` : ""}`;
         for (const kind of ["stable", "unstable"]) line.classList.toggle(kind, word === kind);
         const text = `${sentence[0].toUpperCase()}${sentence.slice(1)}.`;
         if (line.textContent !== text) line.textContent = text;

@@ -4,7 +4,7 @@ Input: a loop. Output: where these poles lie, and what they say of stability. A 
 
     J s^2 phi = K (w - s phi)    has the poles 0 and -K/J, and s phi/w = K/(J s + K) shows -K/J alone
 
-so the shaft's angle, which is arbitrary at rest, does not depend on the gain.
+so the shaft's angle, which is arbitrary at equilibrium, does not depend on the gain.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Values and signs of what is constant at rest: expressions of parameters and of what follows from them.
+"""Values and signs of what is constant at equilibrium: expressions of parameters, and what follows from them.
 
 Input: the expressions of definitions, the numbers of parameters. Output: the value of an expression in balls,
 with random numbers for names that have none, whether it is zero whatever the names are, and its sign.

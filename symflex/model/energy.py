@@ -228,7 +228,7 @@ def with_motion(
 
 
 def _with_multipliers(at_rest: AtRest, unknowns: Sequence[str]) -> AtRest:
-    """Return what is known at rest, with names for multipliers of no given value."""
+    """Return what is known at equilibrium, with names for multipliers of no given value."""
     multipliers = tuple(name for name in unknowns if name.startswith("lambda_"))
     unnamed = {m: Name(f"{m}_0") for m in multipliers if m not in at_rest.values}
     return replace(

@@ -44,7 +44,7 @@ NONLINEAR = frozenset(
 )
 OPERATORS = frozenset("d der ddt diff dot deriv derivative velocity int integral integrate".split())
 LINEARISE = "linearise about an operating point, so that only one factor varies in time"
-AT_REST = "write it in [equations], and the values at rest in [operating_point]: symflex linearises it"
+AT_REST = "write it in [equations], and the values at equilibrium in [operating_point]: symflex linearises it"
 RATIO = "a quotient of two is a transfer function: make the denominator an input, and the numerator an output"
 
 

@@ -72,7 +72,7 @@ class ModelParameter:
     scale: ExactValue = ONE  # what one of that unit is in the unit of ``value``
     limits: tuple[ExactValue, ExactValue] | None = None  # its ``range``, like ``value``
     spread: Fraction | ExactValue | None = None  # to either side of the value, or as a share of it
-    is_solved_with: bool = False  # a number at rest was solved for with its value, or is its value
+    is_solved_with: bool = False  # a number at equilibrium was solved for with its value, or is its value
 
     def __repr__(self) -> str:
         value, unit = self.as_written()
@@ -223,7 +223,7 @@ class FieldProblem:
 
 @dataclass(frozen=True, slots=True)
 class FoundValue:
-    """A value at rest that was solved for, in the unit that its parameter was declared in."""
+    """A value at equilibrium that was solved for, in the unit that its parameter was declared in."""
 
     name: str
     value: Fraction
@@ -245,7 +245,7 @@ class FoundValue:
 
 @dataclass(frozen=True, slots=True)
 class OperatingPoint:
-    """Values at rest, the nonlinear equations that hold there, and what became of them."""
+    """Values at equilibrium, the nonlinear equations that hold there, and what became of them."""
 
     values: NamedExpressions  # by name, "x'" for a rate
     equations: tuple[Equation, ...]  # as written

@@ -1,4 +1,4 @@
-"""Nonlinear ``[equations]``, made linear about the values at rest that ``[operating_point]`` gives.
+"""Nonlinear ``[equations]``, made linear about the values at equilibrium that ``[operating_point]`` gives.
 
 Input: equations as Newton's or Kirchhoff's law has them, with powers and functions of what varies in time.
 Output: linear equations of the deviations from rest, which keep the names, and definitions for values.
@@ -8,7 +8,7 @@ Output: linear equations of the deviations from rest, which keep the names, and 
 
     i_0 = sqrt(m*g*x_0^2/C),  m*s^2*x - 2*C*i_0^2/x_0^3*x + 2*C*i_0/x_0^2*i = 0
 
-The equations have to hold at rest whatever their letters are: what is left over is evaluated in balls for
+The equations have to hold at equilibrium whatever their letters are: the residual is evaluated in balls for
 random values, so a number that is not zero is noticed, and an identity missed with probability 0.
 """
 
@@ -63,7 +63,7 @@ SOLVE = "solve"
 SIGNS = ("abs", "sgn", "sign")
 SMOOTH = f"write powers, {', '.join(FUNCTIONS)}, and abs and sgn of what has a sign"
 DELAYED = 'write x\' for the derivative of x; what is delayed is a signal of its own: x_d = "exp(-s*T)*x"'
-LONGEST = 500  # parts of a value at rest in which values above it are put
+LONGEST = 500  # parts of a value at equilibrium in which values above it are put
 
 
 @dataclass(frozen=True)
@@ -147,7 +147,7 @@ def linearised(
     moving: Collection[str],
     constants: Constants,
 ) -> tuple[tuple[Signal, ...], list[Definition], OperatingPoint | None, Mapping[str, Fraction]]:
-    """Return linear signals, definitions of values at rest, the operating point, and solved parameters."""
+    """Return linear signals, definitions of equilibrium values, the operating point, solved parameters."""
     # ``moving`` are all names that vary. Without an operating point only derivatives are rewritten, as
     # products with s.
     equations = {x.name: x.expression for x in signals if isinstance(x.expression, Equation)}
@@ -200,7 +200,7 @@ def in_s(expression: Expression, names: Collection[str] | None = None) -> Expres
 
 
 class _AboutRest:
-    """Linearises equations about one point, and keeps what is left of each at rest."""
+    """Linearises equations about one point, and keeps what is left of each at equilibrium."""
 
     def __init__(
         self,
@@ -214,7 +214,7 @@ class _AboutRest:
         self.found: tuple[FoundValue, ...] = ()
         self.used: set[str] = set()  # names whose values were used
         self.decided: dict[Expression, int] = {}  # signs of arguments of abs and sgn
-        self.whole: list[Equation] = []  # at rest, as they are written
+        self.whole: list[Equation] = []  # at equilibrium, as they are written
         self.bare: set[Expression] = set()  # names that occur without a derivative
         self.slopes: list[dict[str, Expression]] = []  # of each equation, by what varies
         self.values = dict(at_rest.values)
@@ -223,7 +223,9 @@ class _AboutRest:
             (*at_rest.solve, *at_rest.multipliers)
         )
         self.left_over: list[Left] = []
-        self.calls: Mapping[Expression, Expression] = {}  # what functions that were inverted are at rest
+        self.calls: Mapping[
+            Expression, Expression
+        ] = {}  # what functions that were inverted are at equilibrium
         self.seen: set[str] = set()
         self.signals: dict[str, Expression] = {}  # explicit ones, and rates, which follow from the others
         rates = {n: v for n, v in at_rest.values.items() if n.endswith("'") and not is_number(v, 0)}
@@ -267,7 +269,7 @@ class _AboutRest:
         return False
 
     def check_all_named(self, moving: Collection[str], equations: Iterable[Equation]) -> None:
-        """Note names that mean nothing, and values at rest that vary."""
+        """Note names that mean nothing, and values at equilibrium that vary."""
         for leaf in dict.fromkeys(n for e in equations for n in nodes(e)):
             name = leaf.name if isinstance(leaf, Name | Derivative) else None
             if name is None or name in moving or not self.varies(leaf):
@@ -286,7 +288,9 @@ class _AboutRest:
                     self.reader.note("SF210", message, call.span, nearest(call.name, FUNCTIONS) or SMOOTH)
         for value in self.rest.values.values():
             for leaf in (n for n in nodes(value) if self.varies(n) or n == Name(LAPLACE)):
-                message = f"'{format_expression(leaf)}' is not a parameter; values at rest are constant"
+                message = (
+                    f"'{format_expression(leaf)}' is not a parameter; values at equilibrium are constant"
+                )
                 hint = nearest_name(format_expression(leaf), list(self.constants.expressions))
                 self.reader.note("SF210", message, leaf.span or value.span, hint)
 
@@ -329,7 +333,7 @@ class _AboutRest:
         )
 
     def check_domain(self) -> None:
-        """Note what has no value with the values at rest: a quotient by zero, a logarithm or root."""
+        """Note what has no value with the values at equilibrium: a quotient by zero, a logarithm or root."""
         for equation in self.whole:
             for node in nodes(equation.left):
                 below = divisor(node)
@@ -374,7 +378,7 @@ class _AboutRest:
                         self.signals.setdefault(format_expression(rate), value)
 
     def _leads_to(self, leaf: Expression, expression: Expression, passed: set[Expression]) -> bool:
-        """Tell whether the value of an expression at rest follows from that of a leaf."""
+        """Tell whether the value of an expression at equilibrium follows from that of a leaf."""
         new = {*self.leaves(expression)} - passed
         passed |= new
         free = {format_expression(each) for each in new} - self.values.keys()
@@ -382,7 +386,7 @@ class _AboutRest:
         return leaf in new or any(self._leads_to(leaf, each, passed) for each in known)
 
     def take_signal(self, signal: Signal) -> None:
-        """Let the value of an explicit signal at rest follow from the others."""
+        """Let the value of an explicit signal at equilibrium follow from the others."""
         value = self._with_primes(signal.expression)
         self._met(value)
         self.signals[signal.name] = replace_values(value, {Name(LAPLACE): number(0)})
@@ -401,7 +405,7 @@ class _AboutRest:
         return leaves
 
     def at_rest(self, expression: Expression) -> Expression:
-        """Return an expression with the values at rest in place of all that varies."""
+        """Return an expression with the values at equilibrium in place of all that varies."""
         leaves = {n: self._value_at_rest(format_expression(n)) for n in nodes(expression) if self.varies(n)}
         value = simplified(
             replace_values(expression, leaves), {format_expression(n): v for n, v in leaves.items()}
@@ -430,7 +434,10 @@ class _AboutRest:
             self.values[name] = Name(name)  # where a loop leads back to it
             value = self.values[name] = self.at_rest(self.signals[name])
             if Name(name) in nodes(value):
-                message, hint = f"'{name}' depends on itself at rest", "give its value in [operating_point]"
+                message, hint = (
+                    f"'{name}' depends on itself at equilibrium",
+                    "give its value in [operating_point]",
+                )
                 self.reader.note("SF407", message, self.rest.span, hint)
         return self.values.get(name, number(0))
 
@@ -460,14 +467,14 @@ class _AboutRest:
             lower_rates = {base + "'" * k for k in range(1, order)}
             depends = Name(base) in (self.drifting if order == 1 else self.bare)
             if order and not is_number(value, 0) and (depends or lower_rates & self.seen):
-                message = f"'{base}' is not at rest, as '{name}' has a value, and equations depend on it"
+                message = f"'{base}' moves, as '{name}' has a value, and equations depend on it"
                 hint = (
                     "what turns steadily may occur by its rates, and in differences of angles that turn alike"
                 )
                 self.reader.note("SF407", message, value.span or given.span, hint)
 
     def check_at_rest(self) -> None:
-        """Solve what is asked for, and note every equation that does not hold at rest."""
+        """Solve what is asked for, and note every equation that does not hold at equilibrium."""
         solving = Solving(self.reader, self.constants)
         unsolved, missing = solving.solve(self.left_over, [*self.rest.multipliers, *self.rest.solve])
         self.definitions += solving.definitions
@@ -495,20 +502,22 @@ class _AboutRest:
             if name in self.rest.multipliers:
                 self.definitions.append(Definition(name, number(0), "", self.rest.span))
                 continue
-            message, hint = f"no equation at rest determines '{name}'", "leave it out of solve"
+            message, hint = f"no equation at equilibrium determines '{name}'", "leave it out of solve"
             rates = [r for r, value in self.values.items() if r[-1] == "'" and Name(name) in nodes(value)]
             if rates:  # r' = w - p gives the rate of r, not w
-                hint = f'write "{rates[0]}" = "0" if \'{rates[0][:-1]}\' is at rest too, or {hint}'
+                hint = f'write "{rates[0]}" = "0" if \'{rates[0][:-1]}\' is at equilibrium too, or {hint}'
             self.reader.note("SF407", message, self.rest.span, hint)
         for part, sign in self.decided.items():
             value = self.constants.here(part)
             if value is not None and value.is_finite() and (value > 0) - (value < 0) != sign:
                 message = f"'{format_expression(part)}' is taken for {'positive' if sign > 0 else 'negative'}"
-                hint = "declare values with the signs that they have at rest"
-                self.reader.note("SF407", f"{message} at rest, and is not", part.span or self.rest.span, hint)
+                hint = "declare values with the signs that they have at equilibrium"
+                self.reader.note(
+                    "SF407", f"{message} at equilibrium, and is not", part.span or self.rest.span, hint
+                )
 
     def check_constraints(self, equations: Mapping[str, Equation], *, is_solved: bool) -> None:
-        """Note constraints with dependent gradients at rest: what is linear of them says too little."""
+        """Note constraints with dependent gradients there: what is linear of them says too little."""
         by_name = dict(zip(equations, self.slopes, strict=True))
         rows = [
             [by_name[name].get(q, number(0)) for q in self.rest.coordinates] for name in self.rest.constraints
@@ -526,7 +535,7 @@ class _AboutRest:
         if value is not None and value.is_finite():
             size = f" ({'0 for these values alone' if value.contains(0) else value.str(3, radius=False)})"
         shown = format_expression(unsolved.residual)
-        message = f"this does not hold at the operating point: {shown} is left{size}"
+        message = f"this does not hold at the operating point: its residual is {shown}{size}"
         hint = "correct [operating_point], or name what follows from it: solve = [...]"
         self.reader.note("SF407", message, unsolved.equation.span, hint)
 

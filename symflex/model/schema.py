@@ -65,7 +65,7 @@ def json_schema() -> Schema:
         "equations": _equations(),
         "operating_point": {
             "type": "object",
-            "description": "values at rest of what equations and energies contain",
+            "description": "values at equilibrium of what equations and energies contain",
             "properties": {"solve": _said({"type": "array", "items": TEXT}, "parameters that follow")},
             "additionalProperties": VALUE,
         },

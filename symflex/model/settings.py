@@ -132,9 +132,11 @@ def value_in_unit(parameter: ModelParameter, quantity: Quantity) -> ExactValue:
 
 
 def check_free(parameter: ModelParameter) -> None:
-    """Refuse to vary a parameter with which a number at rest was solved for; SF801."""
+    """Refuse to vary a parameter with which a number at equilibrium was solved for; SF801."""
     if parameter.is_solved_with:
-        message = f"values at rest were found with this value of '{parameter.name}', and would not follow it"
+        message = (
+            f"values at equilibrium were found with this value of '{parameter.name}', and would not follow it"
+        )
         hint = f"--set {parameter.name}=VALUE solves anew, as does load(FILE, values=...) in Python"
         raise ModelError(Diagnostic("SF801", message, parameter.span, hint))
 

@@ -1,7 +1,7 @@
-"""Values at rest that follow from the equations: as formulas where they can be, else as enclosed numbers.
+"""Equilibrium values that follow from the equations: as formulas where they can be, else as enclosed numbers.
 
-Input: what is left of each equation at rest, and the names to be solved for, with the values that some are
-declared with. Output: a definition for each formula, a number for each other name.
+Input: the residual of each equation at equilibrium, and the names to be solved for, with the values that some
+are declared with. Output: a definition for each formula, a number for each other name.
 
     m*g - C*i_0^2/x_0^2 = 0      i_0 = sqrt(m*g*x_0^2/C), of two roots that with the declared sign
     k*x_0 - c/(d - x_0)^2 = 0    the solution that the declared x_0 leads to
@@ -74,7 +74,7 @@ SHOWN = 4  # solutions that a message lists
 
 @dataclass(frozen=True)
 class Left:
-    """What is left over of an equation at rest."""
+    """What is left over of an equation at equilibrium."""
 
     residual: Expression
     equation: Equation
@@ -110,7 +110,7 @@ class _Coupled:
 
 @dataclass
 class Solving:
-    """Solves equations at rest for names."""
+    """Solves equations at equilibrium for names."""
 
     reader: Reader
     constants: Constants
@@ -118,7 +118,9 @@ class Solving:
     by_value: dict[str, Fraction] = field(default_factory=dict)
     used: set[str] = field(default_factory=set)  # names whose values were used
     found: list[FoundValue] = field(default_factory=list)
-    calls: dict[Expression, Expression] = field(default_factory=dict)  # what inverted functions are at rest
+    calls: dict[Expression, Expression] = field(
+        default_factory=dict
+    )  # what inverted functions are at equilibrium
     _boxes: dict[str, arb] = field(default_factory=dict)  # of what was solved by value
 
     def solve(self, residuals: Sequence[Left], names: Sequence[str]) -> tuple[list[Left], list[str]]:
@@ -270,7 +272,7 @@ class Solving:
         """Note that no solution belongs to declared values, with those that are found elsewhere."""
         named, shown = ", ".join(search.unknowns), format_expression(row.residual)
         message = f"'{named}' is not found: {shown} has no root next to its value"
-        hint = f"give '{named}' a value close to the one at rest, and all other parameters theirs"
+        hint = f"give '{named}' a value close to the one at equilibrium, and all other parameters theirs"
         others = self._listed(search, search.others[:SHOWN]) or "none"
         if search.doubtful:
             meant = self._listed(search, [search.doubtful])
@@ -288,7 +290,7 @@ class Solving:
         }:  # made names of unknowns cannot be given one
             message = f"'{named}' is not found: {shown} = 0 has no formula for it, and no value is declared"
             message += f"; found: {others}" if search.is_evaluated else ""
-            hint = f"declare parameters with values close to those at rest, {EXAMPLE}"
+            hint = f"declare parameters with values close to those at equilibrium, {EXAMPLE}"
         self.reader.note("SF407", message, row.equation.span, hint)
 
     def _listed(self, search: _Search, solutions: Iterable[Sequence[arb]]) -> str:
@@ -455,7 +457,7 @@ def _inverted(residual: Expression, unknown: str, wanted: Collection[str]) -> Ex
 
 
 def _one_call(residual: Expression, unknown: str, wanted: Collection[str]) -> tuple[Call, Expression] | None:
-    """Return the only function that has an unknown in its argument, and its value at rest."""
+    """Return the only function that has an unknown in its argument, and its value at equilibrium."""
     calls = [n for n in nodes(residual) if isinstance(n, Call) and Name(unknown) in nodes(n.argument)]
     if not calls or calls[0].name not in INVERSES:
         return None

@@ -1,9 +1,9 @@
 """Linear equations of motion as text and JSON: what ``[equations]`` and ``[energy]`` became.
 
-Input: a resolved model. Output: values at rest, linear equations, matrices of mass, damping and stiffness.
+Input: a resolved model. Output: equilibrium values, linear equations, matrices of mass, damping, stiffness.
 
-    at rest   x = x_0, i = i_0
-    linear    m*s^2*x - 2*C*i_0^2/x_0^3*x + 2*C*i_0/x_0^2*i = 0
+    at equilibrium  x = x_0, i = i_0
+    linear          m*s^2*x - 2*C*i_0^2/x_0^3*x + 2*C*i_0/x_0^2*i = 0
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from symflex.model import Model
     from symflex.model.model import FoundValue
 
-SOLVED = "solved at rest: "
+SOLVED = "solved at equilibrium: "
 DIGITS = 6  # of values in a terminal
 JSON_DIGITS = 15
 MATRICES = ("mass", "damping", "stiffness")
@@ -28,7 +28,7 @@ WIDTH = 80  # columns of a terminal
 
 
 def motion_json(model: Model) -> dict[str, object]:
-    """Return the equations with, of nonlinear ones, the values at rest and the matrices."""
+    """Return the equations with, of nonlinear ones, the values at equilibrium and the matrices."""
     point = model.operating_point
     linear = _linear(model)
     document: dict[str, object] = {"equations": linear}
@@ -47,7 +47,7 @@ def motion_text(model: Model) -> str:
     """Return the same as lines for a terminal."""
     point, lines = model.operating_point, list[str]()
     if point is not None and point.values:
-        lines.append("  at rest")
+        lines.append("  at equilibrium")
         lines += [f"    {name} = {format_expression(value)}" for name, value in point.values]
         shown = {format_expression(value) for _, value in point.values}
         own = [d for d in model.definitions if d.name in shown]

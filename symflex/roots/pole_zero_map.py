@@ -50,7 +50,7 @@ class StabilityVerdict:
     >>> StabilityVerdict("unknown", 0, False, "passive").headline
     'stable or marginal'
     >>> StabilityVerdict("stable", 0, True, hidden="a hidden pole at s = 0", moving=("phi",)).hidden_motion
-    'a hidden pole at s = 0: phi is arbitrary at rest'
+    'a hidden pole at s = 0: phi is arbitrary at equilibrium'
     """
 
     word: Literal["stable", "marginal", "unstable", "unknown"]
@@ -94,7 +94,7 @@ class StabilityVerdict:
         more = len(self.moving) - MOST_NAMES
         shown = [*self.moving[:MOST_NAMES], *([f"{more} other{'s' * (more > 1)}"] if more > 0 else [])]
         names = " and ".join([", ".join(shown[:-1]), shown[-1]] if len(shown) > 1 else shown)
-        return f"{self.hidden}: {names} {'are' if len(shown) > 1 else 'is'} arbitrary at rest"
+        return f"{self.hidden}: {names} {'are' if len(shown) > 1 else 'is'} arbitrary at equilibrium"
 
     @property
     def brief(self) -> str:

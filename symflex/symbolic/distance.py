@@ -97,7 +97,7 @@ def distance(
         if a < b:
             inside = {k: [f for f in v if a <= BESIDE * f and f <= BESIDE * b] for k, v in places.items()}
             shown = [f"{k} at {', '.join(f'{x:.4g}' for x in v[:SHOWN])} Hz" for k, v in inside.items() if v]
-            said.append(", ".join([f"excepted: {a:.4g} to {b:.4g} Hz", *shown]))
+            said.append(", ".join([f"except {a:.4g} to {b:.4g} Hz", *shown]))
             excepted.append({"band_hz": [a, b], **{f"{k}_hz": v for k, v in inside.items()}})
     facts |= {"within_1_db_hz": [[*piece] for piece in kept], "excepted": excepted}
     return Approximation(tuple(said), facts)

@@ -58,6 +58,7 @@ Lead = tuple[Factored, Fraction, Mapping[Any, int]]
 """A value, in which wavenumbers stand for themselves, a power of s, and exponentials and oscillations."""
 
 ENDS: Final = ("0", "infinity")
+CORNER: Final = "corner frequency"  # of both leading terms
 MINUS: Final = Number(Fraction(-1))
 ORDERS: Final = (8, 16, 32)  # powers of a wavenumber up to which kernels are expanded, one after the other
 STEPS: Final = (16, 32, 48)  # binary orders by which a check's points lie beyond its parameters' scale
@@ -110,7 +111,8 @@ class SymbolicForm:
     notes: tuple[str, ...] = ()
 
     def row(self, name: str) -> Row | None:
-        """Return the line of a name."""
+        """Return the line of a name; ``both meet at`` is an earlier one of ``corner frequency``."""
+        name = CORNER if name == "both meet at" else name
         return next((row for row in self.rows if row.name == name), None)
 
     def expr(self, name: str) -> sympy.Expr | None:
@@ -175,7 +177,7 @@ def limits_of(tf: AnyTransferFunction) -> SymbolicForm:
         at = value_of(tf, with_lines(corner, dict(rows[0].where)))
         if at or (at is None and not any(isinstance(n, e.Negative) for n in e.nodes(corner))):
             said = f"{at / tau:.6g} Hz" if at else ""
-            rows.append(Row("both meet at", ":  ", r"\omega &=", corner, said, at, "rad/s"))
+            rows.append(Row(CORNER, ":  ", r"\omega &=", corner, said, at, "rad/s"))
     if ENDS[1] in found and tf.kernels.wavenumbers:
         notes.append(RIGHT)
     return SymbolicForm(tf, tuple(rows), tuple(notes))

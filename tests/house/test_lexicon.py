@@ -56,7 +56,7 @@ LEXICON = {
         {},
     ),
     r"\blost in (?:its|their) (?:own )?(?:standard )?errors?\b": ("less than twice its standard error", {}),
-    r"\bmay rest anywhere\b": ("is arbitrary at rest", {}),
+    r"\bmay rest anywhere\b": ("is arbitrary at equilibrium", {}),
     r"\binputs? and outputs? (?:do not )?see\b|\bno (?:in|out)put sees\b": (
         "uncontrollable or unobservable",
         {},

@@ -90,7 +90,7 @@ LONGEST_LATEX: Final = 60_000
 
 
 def motion_section(study: Study) -> ChapterPart | None:
-    """Return the values at rest and the linear equations of a nonlinear model: all else follows from them."""
+    """Return the equilibrium values and linear equations of a nonlinear model: all else follows from them."""
     point = study.model.operating_point
     if point is None:
         return None
@@ -108,7 +108,11 @@ def motion_section(study: Study) -> ChapterPart | None:
     blocks = [text(*runs, ". The names below stand for deviations from rest:")] if runs else []
     solved = list[Run]()
     for name, shown_value in solved_values(study.model):
-        solved += [", " if solved else "Solved at rest: ", labelled(Name(name), labels), f" = {shown_value}"]
+        solved += [
+            ", " if solved else "Solved at equilibrium: ",
+            labelled(Name(name), labels),
+            f" = {shown_value}",
+        ]
     blocks = [text(*solved, "."), *blocks] if solved else blocks
     return ChapterPart("Linear equations", (*blocks, *(text(*shown(e.left, e.right)) for e in point.linear)))
 

@@ -27,7 +27,7 @@ from symflex.report.sections.roots import decimal
 from symflex.report.study import Study, attempt
 from symflex.symbolic.frequency_equation import symbolic_roots
 from symflex.symbolic.groups import dimensionless_of
-from symflex.symbolic.limits import limits_of
+from symflex.symbolic.limits import CORNER, limits_of
 from symflex.symbolic.roots import IF, SymbolicFactor
 from symflex.symbolic.short import approximation
 from symflex.transfer import AnyTransferFunction
@@ -59,13 +59,17 @@ def _limits(tf: AnyTransferFunction, labels: Mapping[str, str]) -> Iterator[Bloc
     named = {
         "s -> 0": ("G_0", "s → 0"),
         "s -> infinity": ("G_infinity", "s → ∞"),
-        "both meet at": ("omega_m", ""),
+        CORNER: ("omega_m", ""),
     }
     runs, sides = list[Run](), list[tuple[Mathematics, Expression]]()
     for row in found.rows:
         name, end = named[row.name]
         left_side = labelled(Name(name), LIMITS)
-        runs += ["; " if runs else "Leading terms: ", left_side, f" for {end}" if end else " where both meet"]
+        runs += [
+            "; " if runs else "Leading terms: ",
+            left_side,
+            f" for {end}" if end else " at the corner frequency",
+        ]
         runs += [f" ({unit_text(row.comment)})"] if row.comment else []
         sides.append((left_side, row.expression))
     if sides:

@@ -390,7 +390,7 @@ def test_a_point_that_is_no_equilibrium_is_refused_with_what_is_left(name):
 
 def test_a_rate_that_takes_up_an_input_to_be_solved_is_named():
     printed = TEXTBOOKS["Bell, Astrom: boiler and turbine"][3]
-    with pytest.raises(SpecError, match="no equation at rest determines 'w_0'") as refused:
+    with pytest.raises(SpecError, match="no equation at equilibrium determines 'w_0'") as refused:
         _model("Bell, Astrom: boiler and turbine", {n: v for n, v in printed.items() if n != "r'"})
     assert 'write "r\'" = "0"' in refused.value.diagnostics[0].hint
 

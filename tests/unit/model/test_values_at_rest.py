@@ -268,7 +268,7 @@ def test_a_square_that_is_solved_for_is_not_followed_to_where_it_is_negative():
     ("value", "hint"), [("tank_O", "did you mean 'tank_0'?"), ("2*x", "known names: tank_0, u_0")]
 )
 def test_values_at_rest_that_are_no_constants_are_refused_at_their_place(value, hint):
-    with pytest.raises(SpecError, match="values at rest are constant") as refused:
+    with pytest.raises(SpecError, match="values at equilibrium are constant") as refused:
         loads(_text({"tank_0": 2}, ["x"], ["x' + x^2 = u"], {"x": value, "u": 4}, []))
     (problem,) = refused.value.diagnostics
     assert (problem.code, problem.hint) == ("SF210", hint)
@@ -455,7 +455,7 @@ def test_commands_print_the_values_that_were_found_beside_the_declared_ones(tmp_
     for command in ("check", "derive", "roots"):
         assert run([command, str(path)]) == 0
         out = capsys.readouterr().out
-        assert "solved at rest: x_0 = 0.516996 um (radius 6.0e-9 um, declared 0.1 um)" in out, command
+        assert "solved at equilibrium: x_0 = 0.516996 um (radius 6.0e-9 um, declared 0.1 um)" in out, command
         assert run([command, str(path), "--json"]) == 0
         out = capsys.readouterr().out
         assert '"declared": "0.1"' in out, command
@@ -510,4 +510,4 @@ def test_a_value_without_a_unit_is_printed_without_one(tmp_path, capsys):
     )
     assert run(["check", str(path)]) == 0
     # r_0 = a + w cos(a)/k
-    assert "solved at rest: r_0 = 0.956611 (radius 4.8e-7)" in capsys.readouterr().out
+    assert "solved at equilibrium: r_0 = 0.956611 (radius 4.8e-7)" in capsys.readouterr().out

@@ -190,7 +190,7 @@ def test_a_nonlinear_model_has_its_linear_equations_before_what_follows_from_the
     path.write_text(PENDULUM)
     solved, rest, equation = motion_section(Study.of(path, "pendulum")).blocks
     said = "".join(r if isinstance(r, str) else r.latex for r in solved.runs)
-    assert said.startswith(r"Solved at rest: \tau_{0} = 1.50000 N*m (radius ")  # 3 sin 30 deg
+    assert said.startswith(r"Solved at equilibrium: \tau_{0} = 1.50000 N*m (radius ")  # 3 sin 30 deg
     said = "".join(r if isinstance(r, str) else r.latex for r in rest.runs)
     assert said == r"At rest, \theta = q, \tau = \tau_{0}. The names below stand for deviations from rest:"
     assert equation.runs[0].latex == r"J s^{2} \theta + w \, \cos(q) \, \theta"

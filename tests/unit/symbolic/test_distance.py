@@ -60,7 +60,7 @@ def test_what_is_said_of_a_lag_that_was_left_out_ends_where_that_begins_to_show(
         "poles up to 159.2 Hz: 1 moved by at most 0.011 %, 1 without a counterpart",  # 0.01 %, rounded up
         f"error at most 10 %: 0.01592 to {facts['within_10_percent_to_hz']:.4g} Hz",
         f"magnitude within 1 dB: 0.01592 to {end:.4g} Hz",
-        f"excepted: {end:.4g} to 159.2 Hz, poles at 15.92 Hz",
+        f"except {end:.4g} to 159.2 Hz, poles at 15.92 Hz",
     )
 
 

@@ -165,9 +165,9 @@ def test_what_decays_along_a_beam_agrees_with_a_numeric_solution() -> None:
     ("name", "lines"),
     [
         ("oscillator", ["static compliance, 0.125 m/N", "mass line, -40 dB/decade, 0.5 m/(N*s^2)"]),
-        ("damped body", ["damper line, -20 dB/decade", "both meet at:   b/m   0.0238732 Hz, 0.15 rad/s"]),
+        ("damped body", ["damper line, -20 dB/decade", "corner frequency:   b/m   0.0238732 Hz, 0.15 rad/s"]),
         ("cantilever", ["static compliance", "-30 dB/decade", "on s = j*omega only with damping"]),
-        ("low pass", ["static gain, 1", "both meet at:   1/sqrt(L*C)"]),
+        ("low pass", ["static gain, 1", "corner frequency:   1/sqrt(L*C)"]),
     ],
 )
 def test_terms_are_told_in_words_with_their_values_and_where_they_meet(name: str, lines: list[str]) -> None:

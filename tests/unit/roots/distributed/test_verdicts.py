@@ -142,9 +142,9 @@ def test_gaps_of_several_functions_say_every_reason_once_and_how_far_all_are_kno
 def test_hidden_motion_is_a_line_that_names_what_moves():
     for moving, said in [
         ("", ", uncontrollable or unobservable"),
-        ("u", ": u is arbitrary at rest"),
-        ("xy", ": x and y are arbitrary at rest"),
-        ("abcde", ": a, b, c and 2 others are arbitrary at rest"),
+        ("u", ": u is arbitrary at equilibrium"),
+        ("xy", ": x and y are arbitrary at equilibrium"),
+        ("abcde", ": a, b, c and 2 others are arbitrary at equilibrium"),
     ]:
         verdict = StabilityVerdict("stable", 0, True, hidden="a hidden pole at s = 0", moving=tuple(moving))
         assert verdict.hidden_motion == f"a hidden pole at s = 0{said}"
