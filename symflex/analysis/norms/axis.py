@@ -12,9 +12,9 @@ on balls of s, and their values on circles make the powers.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import inf
+from math import inf, pi
 
 from flint import acb, acb_mat, acb_poly, arb
 
@@ -29,7 +29,7 @@ from symflex.transfer import BoundTransferFunction
 RATIO = 1.12  # of the ends of first pieces
 ORDER = 6  # powers of a form in a disc
 CIRCLE_POINTS = 14  # values that make the powers of a form beyond, and their number
-REACH = 2  # radius of the disc about a piece beyond, over half the piece
+REACHES = (8, 2)  # radii of the discs about a piece beyond that are tried, over half the piece
 AGREEING = 1e-9  # relative distance of a pole and its rounded value, at most
 CIRCLE = 0.25  # radius of the circle with the values, over that of the disc
 
@@ -94,6 +94,7 @@ class MatrixOnAxis:
     functions: tuple[tuple[Expanded, ...], ...]  # of G, by output and input
     terms: tuple[ModalTerm, ...] = ()  # of R
     constant: tuple[tuple[arb, ...], ...] = ()  # of R
+    delays: tuple[tuple[arb, ...], ...] = ()  # [s] that turn an entry against the others
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -236,6 +237,12 @@ class MatrixOnAxis:
                     break
                 total[n][k] = total[n][k] + factor * regular(s)
                 regular, factor = regular.derivative(), factor * j / (k + 1)
+        for own, delay in zip(total, (x for row in self.delays for x in row), strict=False):
+            # exp(-delay (s + j t)), term by term
+            turn = [(-delay * s).exp()]
+            for k in range(1, ORDER):
+                turn.append(turn[-1] * -j * delay / k)
+            own[:] = [sum((own[i] * turn[k - i] for i in range(k + 1)), acb(0)) for k in range(ORDER)]
         return total
 
     def value(self, s: acb, *, is_wide: bool = False) -> acb_mat:
@@ -254,6 +261,9 @@ class MatrixOnAxis:
                 slope = -term.power / (s - term.pole) ** (term.power + 1)
                 for (i, j), c in term.weights.items():
                     grid[i][j] = grid[i][j] - c * power - c * slope * off
+            if self.delays:
+                turned = zip(grid, self.delays, strict=True)
+                grid = [[x * (-d * s).exp() for x, d in zip(*pair, strict=True)] for pair in turned]
             return acb_mat(rows, columns, [x for row in grid for x in row])
 
     def beyond_disc(self, low: float, high: float) -> TaylorForm:
@@ -262,10 +272,13 @@ class MatrixOnAxis:
         with precision(BITS):
             middle = (arb(low) + arb(high)) / 2
             half = ((arb(high) - arb(low)) / 2).upper()
-            radius = half * REACH
-            box = acb(arb(0, radius), middle + arb(0, radius))
-            most = [abs(x).upper() for x in self.value(box, is_wide=True).entries()]
-            if not all(x.is_finite() for x in most):
+            for reach in REACHES:
+                radius = half * reach
+                box = acb(arb(0, radius), middle + arb(0, radius))
+                most = [abs(x).upper() for x in self.value(box, is_wide=True).entries()]
+                if all(x.is_finite() for x in most):
+                    break
+            else:
                 return TaylorForm((), arb("inf"))
             inner = radius * arb(CIRCLE)
             step = acb(0, 2) * arb.pi() / CIRCLE_POINTS
@@ -282,7 +295,7 @@ class MatrixOnAxis:
                     entries.append(total * turned + acb(arb(0, error), arb(0, error)))
                 powers.append(acb_mat(rows, columns, entries))
             size = sum((x**2 for x in most), arb(0)).sqrt()
-            share = arb(1) / REACH
+            share = arb(1) / reach
             return TaylorForm(tuple(powers), (size * share**CIRCLE_POINTS / (1 - share)).upper())
 
     @cached_property
@@ -307,6 +320,20 @@ class MatrixOnAxis:
                     own = function.regular[0] if function.radius == inf else acb(0)
                     entries.append(own - (self.constant[i][j] if self.constant else 0))
             return acb_mat(rows, columns, entries)
+
+    def of_constants(self, values: acb_mat) -> MatrixOnAxis:
+        """Return a matrix of constants, turned by the same delays."""
+        width = self.shape[1]
+        each = [
+            replace(f, parts=(), radius=inf, regular=(x,))
+            for f, x in zip(self.every, values.entries(), strict=True)
+        ]
+        functions = tuple(tuple(each[i : i + width]) for i in range(0, len(each), width))
+        return MatrixOnAxis(functions, delays=self.delays)
+
+    def turns(self, omega: float) -> float:
+        """Return how often delays turn one entry against another up to a frequency."""
+        return max((abs(float(x)) for row in self.delays for x in row), default=0.0) * omega / (2 * pi)
 
     def vanishes(self, omega: float) -> bool:
         """Tell whether all functions with waves or delays tend to 0."""

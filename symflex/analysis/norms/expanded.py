@@ -36,7 +36,7 @@ from symflex.transfer import AnyBoundFunction
 
 BITS = 192  # of values; those at the coarsest points lose the digits that poles near a circle cost
 WIDE_BITS = 128  # of balls, where sums of exponentials cancel
-BLURRED = 100  # radius of a ball on the rim over the largest value there, at most
+BLURRED = 10_000  # radius of a ball on the rim over the largest value there, at most
 DIGITS = 30  # of poles and residues
 FURTHER = 8  # modes beyond those kept that are looked for, so that the disc reaches beyond these
 MOST_RADII = 6  # that are tried
@@ -98,17 +98,18 @@ class Expanded:
         return self._enclosed[bits](s)
 
 
-def check_delays(functions: Sequence[Sequence[Expanded]], hint: str) -> None:
-    """Raise SF802 where the delays that were left out are not those of inputs and outputs.
+def turning_delays(functions: Sequence[Sequence[Expanded]]) -> tuple[tuple[arb, ...], ...]:
+    """Return the delays that were left out, less those of inputs and outputs; nothing where none is left.
 
     Those change no singular value; others do, as they turn one entry of a matrix against another.
     """
-    delays = [[f.delay for f in row] for row in functions]
-    first = delays[0]
-    pairs = [(x - row[0], y - first[0]) for row in delays for x, y in zip(row, first, strict=True)]
-    if any(not (x - y).contains(0) for x, y in pairs):
-        message = "pairs of the matrix have delays that are not those of their input and output"
-        raise UncertifiedError(Diagnostic("SF802", message, None, hint))
+    first = [f.delay for f in functions[0]]
+    rows: list[tuple[arb, ...]] = []
+    with precision(BITS):
+        for row in functions:
+            own = (f.delay - row[0].delay - y + first[0] for f, y in zip(row, first, strict=True))
+            rows.append(tuple(arb(0) if x.contains(0) else x for x in own))
+    return tuple(rows) if any(x != 0 for row in rows for x in row) else ()
 
 
 def without_delay(bound: AnyBoundFunction) -> tuple[AnyBoundFunction, arb]:

@@ -31,6 +31,7 @@ SQUARINGS = 23  # of a matrix, whose trace is its largest eigenvalue's power the
 NEAR = 1e-6  # relative half width of a piece at a pole's frequency, where a large value is met first
 NODES = 6  # on each side of the middle of a piece
 FURTHER, STEP = 40, 2.0  # frequencies from which on a bound is tried
+MOST_TURNS = 200  # of entries against each other by delays up to such a frequency
 NARROWEST = 1e-12  # relative width of a piece that is not halved any more
 
 
@@ -63,7 +64,9 @@ def eigenvalue_bound(matrix: acb_mat) -> arb:
     trace = sum((power[i, i].real for i in range(n)), arb(0))
     if not trace.is_finite():
         return arb("inf")
-    return (trace.upper().max(arb(0)).root(2**SQUARINGS) + norm(matrix - middle)).upper()
+    top = trace.upper()
+    root = top.root(2**SQUARINGS) if top > 0 else arb(0)  # which flint has none of, of 0
+    return (root + norm(matrix - middle)).upper()
 
 
 def matrix_of_doubles(matrix: acb_mat) -> npt.NDArray[np.complex128] | None:
@@ -220,26 +223,52 @@ def largest_gain(
     most = max([search.level, tail, *tops], key=float)
     near = sorted((p.ends for p in (*search.near, *done.undecided) if p.top >= search.best), key=min)
     places = joined(ball_of(ends) for ends in near)
+    if not places and search.omega < inf:
+        places = (arb(search.omega),)
     return LargestGain(search.best, most, search.omega, high, tuple(reasons), places)
+
+
+def _limit(search: _NormSearch, edge: float) -> tuple[arb, arb, float]:
+    """Return the largest singular value that is neared as the frequency grows: a bound, a value, and where.
+
+    One delay turns the entries through all phases in a period. With several the bound is that of
+    nonnegative entries as large, in phase.
+    """
+    matrix = search.matrix
+    limit = matrix.limit()
+    delays = [delay for row in matrix.delays for delay in row if delay != 0]
+    if not delays or all(x == 0 for x in limit.entries()):
+        flat = squared(TaylorForm((limit,), arb(0)))[0]
+        return eigenvalue_bound(flat).sqrt().upper(), eigenvalue_met(flat).max(arb(0)).sqrt().lower(), inf
+    if all((delay - delays[0]).contains(0) for delay in delays):
+        period = float((2 * arb.pi() / abs(delays[0])).upper())
+        turned = largest_gain(matrix.of_constants(limit), (edge, edge + period), search.width)
+        return turned.most, turned.least, turned.omega
+    sizes = acb_mat(limit.nrows(), limit.ncols(), [acb(abs(x).upper()) for x in limit.entries()])
+    return singular_bound(sizes), arb(0), inf
 
 
 def _tail(search: _NormSearch, edge: float) -> tuple[float, arb]:
     """Return a frequency from which on values are bounded, by the level if possible, and the bound."""
     matrix = search.matrix
     with precision(BITS):
-        flat = squared(TaylorForm((matrix.limit(),), arb(0)))[0]
-        limit, met = eigenvalue_bound(flat).sqrt().upper(), eigenvalue_met(flat)
+        limit, met, place = _limit(search, edge)
         bounds: list[tuple[float, arb]] = []
         for i in range(FURTHER):
             omega = edge * STEP**i
+            if bounds and limit > 0 and matrix.turns(omega) > MOST_TURNS:
+                break
             size = matrix.tail(omega)
             if size is None:
                 continue
             if not bounds and met > 0 and matrix.vanishes(omega):
-                search.meet(met.sqrt().lower(), inf)
+                search.meet(met, place if size == 0 else inf)
             bounds.append((omega, (limit + size).upper()))
             if bounds[-1][1] <= search.level:
                 return bounds[-1]
         if bounds:
-            return min(bounds, key=lambda bound: float(bound[1]))
+            least = min(float(bound) for _, bound in bounds)
+            return next(
+                (omega, bound) for omega, bound in bounds if float(bound) <= least * (1 + search.width)
+            )
     return edge, arb("inf")

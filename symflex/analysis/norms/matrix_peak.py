@@ -15,7 +15,7 @@ from flint import arb
 
 from symflex.analysis.norms.axis import MatrixOnAxis
 from symflex.analysis.norms.energy import matrix_name
-from symflex.analysis.norms.expanded import BITS, Expanded, check_delays, expanded
+from symflex.analysis.norms.expanded import BITS, Expanded, expanded, turning_delays
 from symflex.analysis.norms.largest import largest_gain
 from symflex.balls import ball, precision
 from symflex.loops.peak import Peak
@@ -37,7 +37,8 @@ def matrix_on_axis(rows: Rows, modes: int = MODES) -> MatrixOnAxis:
     for bound in (bound for row in rows for bound in row):
         every.append(expanded(bound, modes, alike=every))
     width = len(rows[0])
-    return MatrixOnAxis(tuple(tuple(every[i : i + width]) for i in range(0, len(every), width)))
+    functions = tuple(tuple(every[i : i + width]) for i in range(0, len(every), width))
+    return MatrixOnAxis(functions, delays=turning_delays(functions))
 
 
 def find_matrix_peak(rows: Rows, band: Ends | None = None) -> Peak:
@@ -49,7 +50,6 @@ def find_matrix_peak(rows: Rows, band: Ends | None = None) -> Peak:
     name, unit = matrix_name(rows)
     ends = None if band is None else Band(*band_ends(band))
     matrix = matrix_on_axis(rows)
-    check_delays(matrix.functions, "'symflex plot SPEC sigma' draws singular values, which are not certified")
     asked = Peak(name, unit, DIGITS, ends, arb("inf"), (), reasons=matrix.reasons, what=SINGULAR)
     poles = [part.root for function in matrix.every for part in function.parts]
     inside = (

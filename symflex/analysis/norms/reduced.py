@@ -24,7 +24,7 @@ from flint import acb, acb_mat, arb
 
 from symflex.analysis.norms.axis import MatrixOnAxis
 from symflex.analysis.norms.energy import H2Norm, integrated, noise_filter
-from symflex.analysis.norms.expanded import BITS, DIGITS, Expanded, check_delays, expanded, static_value
+from symflex.analysis.norms.expanded import BITS, DIGITS, Expanded, expanded, static_value, turning_delays
 from symflex.analysis.norms.largest import LargestGain, eigenvalue_bound, eigenvalue_met, largest_gain
 from symflex.analysis.norms.matrix_peak import matrix_on_axis
 from symflex.analysis.norms.modal_model import ModalModel, modal_model
@@ -402,7 +402,9 @@ def reduced_model(
     check_causal(rows[0][0].source.model, "a reduced model")
     first = modes if modes is not None else rows[0][0].source.model.analysis.modes or 5
     poles = _Poles.of(rows, first)
-    check_delays(poles.functions, "reduce one pair at a time")
+    if turning_delays(poles.functions):
+        message = "pairs of the matrix have delays that are not those of their input and output"
+        raise UncertifiedError(Diagnostic("SF802", message, None, "reduce one pair at a time"))
     if share is None:
         found = _of_modes(poles, first, band)
         return replace(found, channels=_channels(found))

@@ -32,3 +32,7 @@ def test_the_smaller_square_of_a_matrix_is_taken():
     form = TaylorForm((acb_mat(1, 3, [1, 2, 2]),), arb(0))
     (square,) = squared(form)
     assert square.nrows() == 1 and float(square[0, 0].real) == pytest.approx(9)
+
+
+def test_the_largest_eigenvalue_of_zero_is_zero():
+    assert eigenvalue_bound(acb_mat(2, 2)) == 0

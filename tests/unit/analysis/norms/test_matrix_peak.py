@@ -6,8 +6,23 @@ import numpy as np
 import pytest
 
 import symflex
-from symflex.errors import SymflexError
 from tests.unit.analysis.norms.models import cantilever, two_masses
+
+SHAFT = """
+symflex = 1
+[elements]
+s_1 = { type = "shaft", between = ["a", "b"], G = "80 GPa", J = "1e4 mm^4", rho = "7.85 g/cm^3", l = "1.2 m" }
+d_1 = { type = "inertia", at = "a", J = "0.02 kg*m^2" }
+d_2 = { type = "inertia", at = "b", J = "0.05 kg*m^2" }
+b_1 = { type = "rotary_damper", between = ["a", "ground"], b = "0.1 N*m*s/rad" }
+b_2 = { type = "rotary_damper", between = ["b", "ground"], b = "0.3 N*m*s/rad" }
+[inputs]
+T_1 = { torque = "a" }
+T_2 = { torque = "b" }
+[outputs]
+W_1 = "s*a"
+W_2 = "s*b"
+"""
 
 
 def matrix(**outputs):
@@ -54,7 +69,45 @@ def test_a_band_and_a_grid_agree_for_a_beam():
     assert float(peak.magnitude.lower()) <= found.singular_values(2j * np.pi * 30)[0] * (1 + 1e-9)
 
 
-def test_delays_that_turn_entries_against_each_other_are_refused():
-    # Both entries of the first row in phase give 2.30278, in opposite phase 2.61803.
-    with pytest.raises(SymflexError, match="SF802"):
-        matrix(y="u + exp(-s)*v", z="u - 2*v").peak()
+def test_delays_turn_entries_against_each_other():
+    # By hand: with [1, e^-jx; 2 e^-2jx, -1] the largest value is where 3 x = pi: (3 + sqrt(5))/2.
+    found = matrix(y="u + exp(-s)*v", z="2*exp(-2*s)*u - v").peak()
+    assert found.certified and contains(found.magnitude, (3 + sqrt(5)) / 2)
+    assert float(found.places[0].mid()) % (2 * np.pi / 3) == pytest.approx(np.pi / 3, abs=1e-2)
+
+
+def test_the_column_of_wood_and_berry_has_the_peak_of_a_dense_grid():
+    # Wood and Berry 1973, in minutes; the values are of numpy. Delays alone change them by 11 %.
+    column = matrix(
+        y="12.8*exp(-s)/(16.7*s + 1)*u - 18.9*exp(-3*s)/(21*s + 1)*v",
+        z="6.6*exp(-7*s)/(10.9*s + 1)*u - 19.4*exp(-3*s)/(14.4*s + 1)*v",
+    )
+    omega = np.linspace(0.2, 2, 4001)
+    s = 1j * omega
+    rows = [
+        [12.8 * np.exp(-s) / (16.7 * s + 1), -18.9 * np.exp(-3 * s) / (21 * s + 1)],
+        [6.6 * np.exp(-7 * s) / (10.9 * s + 1), -19.4 * np.exp(-3 * s) / (14.4 * s + 1)],
+    ]
+    largest = np.linalg.svd(np.moveaxis(np.array(rows), -1, 0), compute_uv=False)[:, 0].max()
+    found = column.peak(band=(0.2 / (2 * np.pi), 2 / (2 * np.pi)))
+    assert found.certified and contains(found.magnitude, largest, 1e-6)
+
+
+def test_several_delays_of_what_does_not_fall_off_have_bounds_alone():
+    # Independent phases give at most the largest singular value of [1, 0.7, 1; 2, 1, 0.4], numpy's 2.6839.
+    found = symflex.Model(
+        inputs={"u": {}, "v": {}, "w": {}},
+        outputs={"y": "u + 0.7*exp(-0.3*s)*v + w", "z": "2*exp(-0.71*s)*u - v + 0.4*exp(-s)*w"},
+    )
+    peak = found.transfer_matrix().bind().peak()
+    most = np.linalg.svd([[1, 0.7, 1], [2, 1, 0.4]], compute_uv=False)[0]
+    assert not peak.certified and 2.5 < float(peak.magnitude.mid()) <= most
+
+
+@pytest.mark.slow
+def test_modes_that_hardly_any_damper_reaches_are_certified_far_out():
+    # At high modes both inertias nearly rest: w = phi (phi^T T)/(phi^T b phi) with phi = (1/J_1, +-1/J_2),
+    # so that the norm tends to (2500 + 400)/(0.1*2500 + 0.3*400).
+    shaft = symflex.loads(SHAFT).transfer_matrix().bind()
+    found = shaft.peak(band=(12000, 20000))
+    assert found.certified and float(found.magnitude.mid()) == pytest.approx(2900 / 370, rel=1e-5)
