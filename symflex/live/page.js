@@ -22,16 +22,16 @@ function standing(f, declared, why) {
     };
 }
 
-// The response to a unit step: G(s)/s has principal parts, sums of c/(s - p)^(k + 1), each of which is c t^k/k! exp(p t) in
-// time. The numbers c are means over a circle that lies closer to p than to any other pole.
-function stepOf(f, values, listed, times) {
-    const y = new Float64Array(times.length), poles = [{ re: 0, im: 0, multiplicity: 1 }];
+// The principal parts of G(s)/s, sums of c/(s - p)^(k + 1). The numbers c are means over a circle that lies closer to p
+// than to any other pole.
+function partsOf(f, values, listed) {
+    const poles = [{ re: 0, im: 0, multiplicity: 1 }];
     for (const p of listed) {
         const same = poles.find((r) => far(r, p) <= 1e-7 * length(p));
         if (same) same.multiplicity += p.multiplicity;
         else poles.push({ ...p });
     }
-    for (const p of poles) {
+    return poles.map((p) => {
         const room = Math.min(p.im ? 2 * p.im : Infinity, ...poles.filter((r) => r !== p).map((r) => far(r, p)));
         const radius = Number.isFinite(room) ? room / 2 : 1, turns = Array.from({ length: NODES }, (_, k) => TAU * (k + 0.5) / NODES);
         const [x, z] = [Math.cos, Math.sin].map((g) => turns.map((a) => radius * g(a)));
@@ -41,13 +41,35 @@ function stepOf(f, values, listed, times) {
             terms.forEach(([u, v], i) => { terms[i] = [u * x[i] - v * z[i], u * z[i] + v * x[i]]; });
             parts.push([0, 1].map((part) => terms.reduce((n, term) => n + term[part] / NODES, 0)));
         }
+        return { p, parts };
+    });
+}
+
+// The response to a unit step: each principal part is c t^k/k! exp(p t) in time. Before the dead time it is zero, which
+// a sum of finitely many modes is not.
+function stepOf(f, values, listed, times) {
+    const y = new Float64Array(times.length), dead = f.infinite ? deadTime(f, values, listed) : 0;
+    for (const { p, parts } of partsOf(f, values, listed)) {
         const weight = p.im ? 2 : 1;
         for (let k = 0, factorial = 1; k < parts.length; factorial *= ++k) {
             const [a, b] = parts[k].map((v) => weight * v / factorial);
             times.forEach((t, i) => { y[i] += t ** k * Math.exp(p.re * t) * (a * Math.cos(p.im * t) - b * Math.sin(p.im * t)); });
         }
     }
-    return y;
+    return y.map((v, i) => (times[i] < dead ? 0 : v));
+}
+
+// T of a function that behaves as c s^n exp(-s T) far out on the positive axis: ln G at s, 2s and 4s gives it. What bends
+// without a fastest wave has exp(-c sqrt(s)) there, and two triples that disagree: no dead time.
+function deadTime(f, values, listed) {
+    const tall = Math.max(1, ...listed.map(length));
+    for (let s = 1e4 * tall; s > tall / 8; s /= 4) {
+        const [re, im] = f.at([Float64Array.of(s, 2 * s, 4 * s, 8 * s), new Float64Array(4)], values), logs = re.map((x) => Math.log(Math.abs(x)));
+        if (![...logs].every(Number.isFinite) || im.some((x, i) => Math.abs(x) > 1e-9 * Math.abs(re[i]))) continue;
+        const [one, two] = [0, 1].map((k) => (2 * logs[k + 1] - logs[k] - logs[k + 2]) / (s * 2 ** k));
+        return two > 0 && Math.abs(one / two - 1) < 0.02 && two * tall > 1e-9 ? 0.98 * Math.min(one, two) : 0;
+    }
+    return 0;
 }
 
 // ------------------------------------------------------------------------------------------------- plots
@@ -94,10 +116,24 @@ class Plot {
         const id = `${svg.closest("main").id}-${name}`, clip = drawn("clipPath", { id: `${id}-clip` });
         Object.assign(this, { svg, key: "", desc: drawn("desc", { id: `${id}-desc` }), grid: drawn("g"), clip: drawn("rect") });
         this.inner = drawn("g", { "clip-path": `url(#${id}-clip)` });
+        this.over = drawn("g", { class: "reading" });
         svg.setAttribute("role", "img");
         svg.setAttribute("aria-labelledby", `${id}-title ${id}-desc`);
         clip.append(this.clip);
-        svg.append(drawn("title", { id: `${id}-title` }, svg.parentElement.firstChild.textContent), this.desc, clip, this.grid, this.inner);
+        svg.append(drawn("title", { id: `${id}-title` }, svg.parentElement.firstChild.textContent), this.desc, clip, this.grid, this.inner, this.over);
+    }
+
+    // Call with a place in the plot, in its units, wherever the pointer is; with nothing when it leaves.
+    follow(read) {
+        this.svg.addEventListener("pointermove", (e) => {
+            const box = this.svg.getBoundingClientRect(), x = e.clientX - box.left, y = e.clientY - box.top;
+            if (!this.x || x < this.left || x > this.right) return this.over.replaceChildren();
+            const [lo, hi] = this.x.ends, [low, high] = this.y.ends;
+            const said = read(lo + (x - this.left) / (this.right - this.left) * (hi - lo), low + (this.bottom - y) / (this.bottom - this.top) * (high - low));
+            this.over.replaceChildren(...(said ? [drawn("path", { class: "axis", d: `M${this.px(said.at)} ${this.top}V${this.bottom}` }),
+                drawn("text", { x: this.left + 8, y: this.top + 16 }, said.text)] : []));
+        });
+        this.svg.addEventListener("pointerleave", () => this.over.replaceChildren());
     }
 
     // Draw axes between ends, when they or the size changed.
@@ -180,10 +216,10 @@ function picture(plots) {
 function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
     const one = (selector) => main.querySelector(selector), all = (selector) => [...main.querySelectorAll(selector)];
     const parameters = data.parameters, functions = data.functions.map((f) => ({ ...f, at: TRANSFER_FUNCTIONS[f.name] }));
-    const declared = Object.fromEntries(parameters.map((p) => [p.id, p.value])), shown = new Set([0]), earlier = [];
+    const declared = Object.fromEntries(parameters.map((p) => [p.id, p.value])), shown = new Set([0]), earlier = [], later = [], held = [];
     const plots = Object.fromEntries(PLOTS.map((name) => [name, new Plot(one(`svg.${name}`), name)]));
-    const [sliders, fields, rows, checks] = ["input[type=range]", ".parameter input[type=number]", ".parameter", ".checks input"].map(all);
-    let values = { ...declared }, committed = declared, focus = 0, until = 0, wanted = false, axes = {};
+    const [sliders, fields, rows, checks] = ["input[type=range]", ".parameter > input[type=number]", ".parameter", ".checks input"].map(all);
+    let values = { ...declared }, committed = declared, focus = 0, until = 0, wanted = false, axes = {}, zoom = 1, wrong = "";
     const isSame = (a, b) => parameters.every((p) => a[p.id] === b[p.id]), say = (text) => { one(".said").textContent = text; };
     const lacking = (at) => parameters.filter((p) => p.moves && at[p.id] === null).map((p) => p.name);
 
@@ -196,7 +232,8 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
 
     // ------------------------------------------------------------------------------------------ values
 
-    const isLog = (p) => p.low * p.high > 0, written = (p, x = values[p.id]) => (x === null ? NaN : Number((x / p.scale).toPrecision(12)));
+    const isAllowed = (p, x) => Number.isFinite(x) && (p.assume === "real" || x > 0 || (x === 0 && p.assume === "nonnegative"));
+    const isLog = (p) => p.low * p.high > 0 && !p.isLinear, written = (p, x = values[p.id]) => (x === null ? NaN : Number((x / p.scale).toPrecision(12)));
     const place = (p, x) => {
         const [a, b, y] = [p.low, p.high, x].map((v) => (isLog(p) ? Math.log(Math.abs(v)) : v));
         return NOTCHES * (y - a) / (b - a);
@@ -210,9 +247,12 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
             sliders[i].setAttribute("aria-valuetext", isThere ? `${short(x, 6)} ${p.unit}` : "no value");
         });
         one(".undo").disabled = !earlier.length;
+        one(".redo").disabled = !later.length;
+        one(".clear").hidden = !held.length;
         one(".reset").disabled = isSame(values, declared);
     };
     const put = (next) => {
+        wrong = "";
         values = { ...values, ...next };
         sync();
         ask();
@@ -220,6 +260,7 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
     const commit = () => {
         if (isSame(values, committed)) return;
         earlier.push(committed);
+        later.length = 0;
         settle();
     };
     const settle = () => {
@@ -228,24 +269,44 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
         put({});
         if (parent !== window) parent.postMessage({ symflex: values }, "*");
     };
-    const back = () => {
-        if (!earlier.length) return;
-        values = { ...earlier.pop() };
+    const step = (from, to) => {
+        if (!from.length) return;
+        to.push(committed);
+        values = { ...from.pop() };
         settle();
     };
+    const back = () => step(earlier, later), forth = () => step(later, earlier);
     parameters.forEach((p, i) => {
         sliders[i].disabled = fields[i].disabled = !p.moves;
         rows[i].classList.toggle("fixed", !p.moves);
         if (!p.moves) rows[i].title = "fixed: the functions contain its number";
+        const [low, high, linear] = [".low", ".high", ".linear"].map((name) => rows[i].querySelector(name));
+        linear.addEventListener("change", () => { p.isLinear = linear.checked; sync(); });
+        [low.value, high.value] = [short(p.low, 4), short(p.high, 4)].map((x) => x.replaceAll("−", "-"));
+        for (const input of [low, high]) {
+            input.addEventListener("change", () => {
+                const [a, b] = [Number(low.value), Number(high.value)], isGood = Number.isFinite(a) && Number.isFinite(b) && a < b && isAllowed(p, a);
+                input.setCustomValidity(isGood ? "" : `the ends of ${p.name}: lower, then upper, each ${p.assume}`);
+                if (!isGood) return say(input.validationMessage);
+                [p.low, p.high] = [a, b];
+                sync();
+            });
+        }
         sliders[i].addEventListener("input", () => put({ [p.id]: at(p, Number(sliders[i].value) / NOTCHES) * p.scale }));
         fields[i].addEventListener("input", () => {
             const x = fields[i].value === "" ? NaN : Number(fields[i].value);
-            const isGood = Number.isFinite(x) && (p.assume === "real" || x > 0 || (x === 0 && p.assume === "nonnegative"));
+            const isGood = isAllowed(p, x);
             fields[i].setCustomValidity(isGood ? "" : `${p.name} is ${p.assume}`);
-            if (isGood) put({ [p.id]: x * p.scale });
+            if (isGood) return put({ [p.id]: x * p.scale });
+            wrong = fields[i].value === "" ? `${p.name} has no value.` : `${p.name} = ${fields[i].value} is not possible: it is ${p.assume}.`;
+            ask();
         });
         for (const input of [sliders[i], fields[i]]) input.addEventListener("change", commit);
     });
+
+    const still = parameters.filter((p) => !p.moves).map((p) => p.name);
+    one(".fixed-names").hidden = !still.length;
+    one(".fixed-names").textContent = `Fixed here, because the functions contain their numbers: ${still.join(", ")}.`;
 
     // ------------------------------------------------------------------------------------------ buttons
 
@@ -284,36 +345,54 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
         }
         const named = functions.findIndex((f) => f.name === words.get("@tf"));
         if (named >= 0 && named !== focus) choose(named);
-        if (!isSame(next, values)) committed = next;
+        if (isSame(next, values)) return sync();
+        committed = next;
         put(next);
     };
     pressed("reset", () => { put(declared); commit(); });
     pressed("undo", back);
+    pressed("redo", forth);
+    pressed("hold", () => { held.push({ ...values }); say(`These values are kept as dashed curves, ${held.length} in all.`); put({}); });
+    pressed("clear", () => { held.length = 0; say("No values are kept."); put({}); });
+    for (const [name, factor] of [["closer", 2], ["wider", 0.5]]) pressed(name, () => { zoom *= factor; axes.re = axes.im = null; ask(); });
     pressed("copy", () => copy(specification(), "The specification"));
     one(".link").hidden = isInside;
     pressed("link", () => { keep(); copy(location.href, "The link"); });
-    pressed("save", () => {
-        const content = new Blob([picture(Object.values(plots).map((p) => p.svg))], { type: "image/svg+xml" });
-        const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(content), download: "symflex.svg" });
-        link.click();
-        say("symflex.svg is saved.");
+    const file = (one("h1").textContent.match(/[\p{L}\p{N}]+/gu) ?? ["symflex"]).slice(0, 8).join("_");
+    const save = (content, name) => {
+        Object.assign(document.createElement("a"), { href: URL.createObjectURL(content), download: name }).click();
+        say(`${name} is saved.`);
+    };
+    const drawing = () => new Blob([picture(Object.values(plots).map((p) => p.svg))], { type: "image/svg+xml" });
+    pressed("save", () => save(drawing(), `${file}.svg`));
+    pressed("png", () => {
+        const image = new Image(), canvas = document.createElement("canvas"), boxes = Object.values(plots).map((p) => p.svg.getBoundingClientRect());
+        image.onload = () => {
+            canvas.width = 2 * Math.max(...boxes.map((b) => b.width));
+            canvas.height = 2 * boxes.reduce((sum, b) => sum + b.height + 16, 0);
+            canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
+            canvas.toBlob((content) => save(content, `${file}.png`), "image/png");
+        };
+        image.onerror = () => say("This browser draws no PNG here: save the SVG.");
+        image.src = URL.createObjectURL(drawing());
     });
     main.addEventListener("keydown", (e) => {
-        if (!(e.ctrlKey || e.metaKey) || e.key !== "z" || e.target.type === "number") return;
+        const key = e.key.toLowerCase(), isBack = key === "z" && !e.shiftKey, isForth = key === "y" || (key === "z" && e.shiftKey);
+        if (!(e.ctrlKey || e.metaKey) || !(isBack || isForth) || e.target.type === "number") return;
         e.preventDefault();
-        back();
+        (isBack ? back : forth)();
     });
 
     // ------------------------------------------------------------------------------------------ what is shown
 
-    const isHertz = () => one(".hertz").selectedIndex === 0, isDecibels = () => one(".decibels").selectedIndex === 1;
+    const isHertz = () => one(".hertz").selectedIndex === 0, isDecibels = () => one(".decibels").selectedIndex === 1, isWrapped = () => one(".angles").selectedIndex === 0;
     const choose = (i) => {
         focus = i;
         one(".focus").selectedIndex = i;
         shown.add(i);
         checks.forEach((c, k) => { c.checked = shown.has(k); });
         all(".formulas > *").forEach((e, k) => { e.hidden = k !== i; });
-        [axes, until] = [{}, 0];
+        [axes, until, zoom] = [{}, 0, 1];
         ask();
     };
     checks.forEach((c, k) => {
@@ -331,13 +410,14 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
         wanted = true;
     };
     const draw = () => {
-        const names = lacking(values), isGhost = !lacking(declared).length && !isSame(values, declared);
-        one(".missing").hidden = !names.length;
-        one(".plots").hidden = one(".stability").hidden = names.length > 0;
-        one(".missing").textContent = `The plots need values of ${names.join(", ")}: type them, or move the sliders.`;
-        if (names.length) return;
+        const names = lacking(values), isGhost = !lacking(declared).length && !isSame(values, declared), isStopped = names.length > 0 || wrong !== "";
+        one(".missing").hidden = !isStopped;
+        one(".plots").hidden = one(".stability").hidden = isStopped;
+        one(".missing").textContent = wrong || `The plots need values of ${names.join(", ")}: type them, or move the sliders.`;
+        if (isStopped) return;
         const state = display(provers[focus].moved(values, "drawn"));
-        const sets = [[values, state, ""], ...(isGhost ? [[declared, display(provers[focus].first()), " ghost"]] : [])].reverse();
+        const kept = held.filter((at) => !isSame(at, values)).map((at, i) => [at, display(provers[focus].moved(at, `held ${i}`)), " ghost held"]);
+        const sets = [[values, state, ""], ...kept, ...(isGhost ? [[declared, display(provers[focus].first()), " ghost"]] : [])].reverse();
         bode(sets);
         plane(sets, state);
         response(sets);
@@ -358,6 +438,18 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
         return Float64Array.from(list.filter((w) => w >= lo && w <= hi * 1.000001)).sort();
     };
 
+    // A continuous phase, from next to 0 on. Between lines it may turn more than once, as behind a delay: its slope says
+    // how often.
+    const unwrap = (angle, lines, f, given) => {
+        const w = Float64Array.of(1e-6 * lines[0], ...lines), near = w.map((v) => v * (1 + 1e-7));
+        const [[re, im], [x, y]] = [w, near].map((v) => f.at([new Float64Array(v.length), v], given));
+        const slope = w.map((v, k) => 180 / Math.PI * Math.atan2(...over(x[k], y[k], re[k], im[k]).reverse()) / (near[k] - v));
+        let last = Math.atan2(im[0], re[0]) * 180 / Math.PI;
+        angle.forEach((a, k) => {
+            const due = last + (slope[k] + slope[k + 1]) / 2 * (w[k + 1] - w[k]);
+            if (Number.isFinite(due)) last = angle[k] = a + 360 * Math.round((due - a) / 360);
+        });
+    };
     const bode = (sets) => {
         const curves = [], sizes = [], per = isDecibels() ? 20 : 1;
         for (const [given, state, ghost] of sets) {
@@ -365,6 +457,7 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
             for (const i of shown) {
                 const [re, im] = functions[i].at([new Float64Array(w.length), w], given), y = w.map((_, k) => per * Math.log10(Math.hypot(re[k], im[k])));
                 const angle = w.map((_, k) => (Math.atan2(im[k], re[k]) * 180 / Math.PI + 180.1) % 360 - 180.1);
+                if (!isWrapped()) unwrap(angle, w, functions[i], given);
                 curves.push({ i, kind: colour(i) + ghost, x, y, angle });
                 // Peaks of undamped resonances do not set the axis.
                 const sorted = y.filter(Number.isFinite).sort(), cut = Math.floor(0.04 * sorted.length), n = sorted.length - 1;
@@ -375,20 +468,43 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
         axes.size = ends(sizes, axes.size, per === 1);
         const x = { ends: data.band.map((f) => Math.log10(isHertz() ? f : TAU * f)), isLog: true, label: `frequency [${name}]` };
         plots.magnitude.axes(x, { ends: axes.size, isLog: per === 1, label: per === 20 ? "magnitude [dB]" : `magnitude${units.size === 1 ? [...units][0] : ""}` });
-        plots.phase.axes(x, { ends: [-190, 190], label: "phase [°]", ticks: [-180, -90, 0, 90, 180].map((v) => [v, short(v)]) });
+        const angles = curves.flatMap((c) => [...c.angle].filter(Number.isFinite)), [least, most] = isWrapped() || !angles.length ? [-180, 180]
+            : [Math.min(...angles), Math.max(...angles)].map((v, k) => 90 * (k ? Math.ceil : Math.floor)(v / 90 + (k ? -0.01 : 0.01)));
+        const turn = 90 * Math.max(1, Math.ceil((most - least) / 90 / 6)), marks = Array.from({ length: Math.floor((most - least) / turn) + 1 }, (_, k) => least + k * turn);
+        plots.phase.axes(x, { ends: [least - 10, most + 10], label: "phase [°]", ticks: marks.map((v) => [v, short(v)]) });
+        reading = { curve: curves.findLast((c) => c.i === focus && !c.kind.includes("ghost")) ?? curves.at(-1), per, name };
         const spoken = curves.filter((c) => !c.kind.endsWith("ghost") && c.y.length).map((c) => {
             const peak = c.y.reduce((best, v, k) => (v > c.y[best] ? k : best), 0);
             const told = (k) => `${per === 20 ? `${short(c.y[k])} dB` : short(10 ** c.y[k])} at ${short(10 ** c.x[k])} ${name}`;
             return `${functions[c.i].name}: ${told(0)}, largest ${told(peak)}, ${told(c.y.length - 1)}.`;
         });
         plots.magnitude.show(curves.map((c) => plots.magnitude.curve(c.x, c.y, c.kind)), spoken.join(" "));
-        plots.phase.show(curves.map((c) => plots.phase.curve(c.x, c.angle, c.kind, 200)), "Phase between −180° and 180° over the same frequencies.");
+        plots.phase.show(curves.map((c) => plots.phase.curve(c.x, c.angle, c.kind, isWrapped() ? 200 : Infinity)), `Phase between ${short(least)}° and ${short(most)}° over the same frequencies.`);
     };
+    let reading = {};
+    const read = (x) => {
+        const { curve: c, per, name } = reading;
+        if (!c?.x.length) return null;
+        const k = c.x.reduce((best, v, i) => (Math.abs(v - x) < Math.abs(c.x[best] - x) ? i : best), 0);
+        const size = per === 20 ? `${short(c.y[k])} dB` : short(10 ** c.y[k]);
+        return { at: c.x[k], text: `${short(10 ** c.x[k], 5)} ${name}: ${size}, ${short(c.angle[k])}°` };
+    };
+    for (const plot of [plots.magnitude, plots.phase]) plot.follow(read);
+    plots.map.follow((x, y) => {
+        const [lo, hi] = axes.re, [low, high] = axes.im, away = (r) => Math.hypot((r.re - x) / (hi - lo), (r.im - Math.abs(y)) / (high - low));
+        const every = [["pole", nearby.poles], ["zero", nearby.zeros]].flatMap(([kind, list]) => list.map((r) => ({ ...r, kind }))).sort((a, b) => away(a) - away(b));
+        const r = every[0], size = r && length(r);
+        if (!r || away(r) > 0.06) return null;
+        const place = `${short(r.re, 5)}${r.im ? ` ± ${short(r.im, 5)}j` : ""} rad/s`;
+        return { at: r.re, text: `${r.kind} ${place}${size ? `, ${short(size / TAU, 5)} Hz, damping ratio ${short(-r.re / size || 0)}` : ""}` };
+    });
 
+    let nearby = { poles: [], zeros: [] };
     const plane = (sets, state) => {
         const plot = plots.map, every = sets.flatMap(([, s]) => [...s.poles, ...s.zeros]), poles = sets.flatMap(([, s]) => s.poles).map(length);
         // A zero far from all poles would leave them in a corner.
-        const tall = Math.max(1e-9, ...(Math.max(...poles) > 0 ? poles : every.map(length))), roots = every.filter((r) => length(r) <= 3 * tall);
+        nearby = state;
+        const tall = Math.max(1e-9, ...(Math.max(...poles) > 0 ? poles : every.map(length))) / zoom, roots = every.filter((r) => length(r) <= 3 * tall);
         const beyond = [...state.poles, ...state.zeros].filter((r) => length(r) > 3 * tall).length;
         axes.re = ends([...roots.map((r) => r.re), -0.02 * tall, 0.02 * tall], axes.re);
         axes.im = ends([-1, 1].map((k) => k * Math.max(...roots.map((r) => r.im), 0.2 * tall)), axes.im);
@@ -396,20 +512,22 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
         const zero = plot.px(0), { left, right, top, bottom } = plot;
         const parts = [drawn("rect", { class: "right", x: zero, y: top, width: Math.max(right - zero, 0), height: bottom - top }),
             drawn("path", { class: "axis", d: `M${zero} ${top}V${bottom}M${left} ${plot.py(0)}H${right}` })];
-        if (beyond) parts.push(drawn("text", { x: left + 8, y: top + 16 }, `${beyond} zero${beyond > 1 ? "s" : ""} beyond`));
+        if (beyond) parts.push(drawn("text", { x: left + 8, y: bottom - 8 }, `${beyond} ${zoom > 1 ? "root" : "zero"}${beyond > 1 ? "s" : ""} beyond`));
         for (const [, s, ghost] of sets) parts.push(...[s.zeros, s.poles].map((list, k) => plot.marks(list, k === 1, colour(focus) + ghost)));
         plot.show(parts, `${state.poles.length} poles and ${state.zeros.length} zeros in the upper half-plane and on the real axis; a table lists the poles.`);
     };
 
-    // A time in which the slowest motion shows: ten periods, or until it has decayed.
-    const usual = (poles) => {
-        const moving = poles.filter((p) => !isOrigin(p)), slow = Math.min(...moving.map((p) => Math.abs(p.re)));
+    // A time in which the slowest motion shows that contributes a hundredth of the largest: ten periods, or until it has decayed.
+    const usual = (f, given, listed) => {
+        const sizes = partsOf(f, given, listed).filter(({ p }) => !isOrigin(p)).map(({ p, parts }) => [p, Math.hypot(...parts[0])]);
+        const most = Math.max(...sizes.map(([, size]) => size)), moving = sizes.filter(([, size]) => !(size < most / 100)).map(([p]) => p);
+        const slow = Math.min(...moving.map((p) => Math.abs(p.re)));
         return moving.length ? nice(Math.min(10 * TAU / Math.min(...moving.map(length)), 7 / slow)) : 1;
     };
     const response = (sets) => {
         const f = functions[focus], plot = plots.step, known = sets.filter(([, s]) => s.isKnown !== false);
         if (!until) {
-            until = usual(sets[0][1].poles);
+            until = usual(f, sets[0][0], sets[0][1].poles);
             one(".until input").value = String(Number(until.toPrecision(3)));
         }
         const times = Float64Array.from({ length: INSTANTS + 1 }, (_, k) => until * Math.max(k / INSTANTS, 1e-9));

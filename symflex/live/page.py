@@ -62,7 +62,7 @@ def live_page(models: Sequence[tuple[Model, Sequence[tuple[str, str]]]], progres
     sources = "\n".join(package.joinpath(name).read_text(encoding="utf-8") for name in SCRIPTS)
     script = f'"use strict";\n(() => {{\n{sources}\nlive([\n{exported}\n]);\n}})();\n'
     title = models[0][0].title or "Transfer functions" if len(models) == 1 else f"{len(models)} models"
-    policy = f"default-src 'none'; script-src {_hash(script)}; style-src {_hash(style)}"
+    policy = f"default-src 'none'; script-src {_hash(script)}; style-src {_hash(style)}; img-src blob:"
     lines = [
         "<!DOCTYPE html>",
         '<html lang="en"><head><meta charset="utf-8">',
@@ -251,7 +251,10 @@ def _slider(number: int, i: int, p: dict[str, Any], labels: Mapping[str, str], m
         f'<div class="parameter"><label id="{name}">{label} <span>{escape_html(doc)}</span></label>'
         f'<input type="range" min="0" max="400" step="1" aria-labelledby="{name}">'
         f'<input type="number" step="any" aria-labelledby="{name}">'
-        f"<span>{escape_html(p['unit'])}</span></div>"
+        f"<span>{escape_html(p['unit'])}</span>"
+        '<details><summary>range</summary><input type="number" step="any" class="low" aria-label="lower end">'
+        '<input type="number" step="any" class="high" aria-label="upper end">'
+        '<label><input type="checkbox" class="linear"> linear</label></details></div>'
     )
 
 

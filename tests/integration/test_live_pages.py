@@ -173,6 +173,77 @@ def test_values_are_undone_linked_and_copied(browser, tmp_path):
     assert browser.run(ACT % undone) == [70, 50]
 
 
+def test_undone_values_come_back_and_an_impossible_one_takes_the_verdict_away(browser, tmp_path):
+    opened(browser, tmp_path, pipeline.loads(BODY))
+    k = "symflex.parameters.k.value"
+    script = (
+        f"await put(field, 0.07); one('.undo').click(); const undone = {k};"
+        f" one('.redo').click(); const redone = {k};"
+        " await put(field, -3); const { hidden } = one('.stability'), said = one('.missing').textContent;"
+        f" await put(field, 0.06); return [undone, redone, hidden, said, {k}, one('.stability').hidden];"
+    )
+    said = "k = -3 is not possible: it is positive."
+    assert browser.run(ACT % script) == [50, 70, True, said, 60, False]
+
+
+def test_values_are_kept_as_curves_and_the_ends_of_a_slider_are_moved(browser, tmp_path):
+    opened(browser, tmp_path, pipeline.loads(BODY))
+    script = (
+        "one('.hold').click(); await put(field, 0.07); one('.hold').click(); await put(field, 0.09);"
+        " const count = document.querySelectorAll('svg.magnitude .curve').length;"
+        " const high = one('.parameter:nth-of-type(3) .high'); high.value = 4;"
+        " high.dispatchEvent(new Event('change'));"
+        " await put(slider, 400); return [count, symflex.parameters.k.value];"
+    )
+    # The curves at 90 N/m, at 70 N/m, at 50 N/m, which are those declared, and these once more.
+    assert browser.run(ACT % script) == [4, 4000]
+
+
+LATE = """
+symflex = 1
+parameters = { K = 0.8, T = "2 s", tau = "1 s" }
+inputs.r = {}
+outputs.Y = "y"
+signals.y = "K*exp(-T*s)/(tau*s + 1)*(r - y)"
+"""
+
+
+def test_the_step_of_a_delayed_loop_is_zero_until_the_delay(browser, tmp_path):
+    opened(browser, tmp_path, pipeline.loads(LATE))
+    said = browser.run(
+        ACT.replace(
+            "[slider, field] = [1, 2].map((i) => one(`.parameter:nth-of-type(3) input:nth-of-type(${i})`))",
+            "until = one('.until input')",
+        )
+        % "const time = one('.until input'); await put(time, 1.9);"
+        " const early = one('svg.step desc').textContent; await put(time, 3.5);"
+        " return [early, one('svg.step desc').textContent];"
+    )
+    assert said[0] == "Y/r: 0 at 0.95 s, 0 at 1.9 s."
+    # By steps: y = K (1 - exp(-(t - T))) from T to 2 T.
+    last = float(re.findall(r"([\d.]+) at 3.5 s", said[1])[0])
+    assert last == pytest.approx(0.8 * (1 - np.exp(-1.5)), rel=0.02)
+
+
+def test_phase_is_continuous_if_asked_for_and_the_pointer_reads_the_curves(browser, tmp_path):
+    opened(browser, tmp_path, pipeline.loads(LATE.replace('Y = "y"', 'Y = "exp(-9*T*s)*r"')))
+    script = """
+    const angles = document.querySelector('.angles'), svg = document.querySelector('svg.phase');
+    angles.selectedIndex = 1; angles.dispatchEvent(new Event('change'));
+    await new Promise(requestAnimationFrame); await new Promise(requestAnimationFrame);
+    const { left, top, width, height } = svg.getBoundingClientRect();
+    const [clientX, clientY] = [left + width - 30, top + height / 2];
+    svg.dispatchEvent(new PointerEvent('pointermove', { clientX, clientY }));
+    return [svg.querySelector('desc').textContent, svg.querySelector('.reading text').textContent];
+    """
+    described, read = browser.run(f"(async () => {{{script}}})()")
+    assert float(re.findall(r"between \u2212([\d.e]+)", described)[0]) > 360
+    # By hand: the magnitude is 1, and the phase -360 f 9 T.
+    hertz, size, angle = re.findall(r"^([\d.e\u2212]+) Hz: ([\d.]+), \u2212([\d.e]+)", read)[0]
+    assert float(size) == pytest.approx(1, rel=1e-6)
+    assert float(angle) == pytest.approx(360 * 18 * float(hertz), rel=1e-3)
+
+
 def test_hostile_names_and_texts_are_shown_and_run_nothing(browser, tmp_path, monkeypatch):
     names = tuple(dict.fromkeys([*hostile.JAVASCRIPT, *hostile.ODD]))
     model = hostile.with_prose(hostile.mass_on_springs(names), "</script><script>window.pwned = 1</script>")
