@@ -45,10 +45,10 @@ function partsOf(f, values, listed) {
     });
 }
 
-// The response to a unit step: each principal part is c t^k/k! exp(p t) in time. Before the dead time it is zero, which
+// The response to a unit step: each principal part is c t^k/k! exp(p t) in time. Before its delay it is zero, which
 // a sum of finitely many modes is not.
 function stepOf(f, values, listed, times) {
-    const y = new Float64Array(times.length), dead = f.infinite ? deadTime(f, values, listed) : 0;
+    const y = new Float64Array(times.length), late = f.infinite ? delayOf(f, values, listed) : 0;
     for (const { p, parts } of partsOf(f, values, listed)) {
         const weight = p.im ? 2 : 1;
         for (let k = 0, factorial = 1; k < parts.length; factorial *= ++k) {
@@ -56,12 +56,12 @@ function stepOf(f, values, listed, times) {
             times.forEach((t, i) => { y[i] += t ** k * Math.exp(p.re * t) * (a * Math.cos(p.im * t) - b * Math.sin(p.im * t)); });
         }
     }
-    return y.map((v, i) => (times[i] < dead ? 0 : v));
+    return y.map((v, i) => (times[i] < late ? 0 : v));
 }
 
 // T of a function that behaves as c s^n exp(-s T) far out on the positive axis: ln G at s, 2s and 4s gives it. What bends
-// without a fastest wave has exp(-c sqrt(s)) there, and two triples that disagree: no dead time.
-function deadTime(f, values, listed) {
+// without a fastest wave has exp(-c sqrt(s)) there, and two triples that disagree: no delay.
+function delayOf(f, values, listed) {
     const tall = Math.max(1, ...listed.map(length));
     for (let s = 1e4 * tall; s > tall / 8; s /= 4) {
         const [re, im] = f.at([Float64Array.of(s, 2 * s, 4 * s, 8 * s), new Float64Array(4)], values), logs = re.map((x) => Math.log(Math.abs(x)));
