@@ -188,3 +188,51 @@ def test_a_pipe_bends_as_the_four_waves_of_its_equation():
     tip = np.exp(waves * v["L"])
     matrix = [np.ones(4), waves, waves**2 * tip, v["EI"] * waves**3 * tip]
     assert value(model, "Y/F", s) == pytest.approx(solved(matrix, [0, 0, 0, -1]) @ tip, rel=1e-10)
+
+
+def zeros_of(model, outputs=(), inputs=(), **values):
+    zeros = model.transfer_matrix(outputs, inputs).bind(**values).zeros()
+    return sorted((complex(zero) for zero in zeros), key=lambda z: (z.real, z.imag))
+
+
+SECOND = {"h_1": 0.126, "h_2": 0.13, "h_3": 0.048, "h_4": 0.049, "gamma_1": 0.43, "gamma_2": 0.34}
+SECOND |= {"k_1": 3.14e-6, "k_2": 3.29e-6}  # of four tanks in SI units, where the zero is on the right
+
+
+def test_four_tanks_have_zeros_on_either_side_as_their_valves_are_set():
+    # Johansson 2000: (1 + s T_3)(1 + s T_4) = (1 - gamma_1)(1 - gamma_2)/(gamma_1 gamma_2); a zero at 0.013
+    # and the relative gains are in print.
+    model, v = model_and_values("mechatronics/quadruple_tank")
+    for given in ({}, SECOND):
+        own = {**v, **given}
+        lag, other = (own[f"A_{i}"] / own[f"a_{i}"] * np.sqrt(2 * own[f"h_{i}"] / own["g"]) for i in (3, 4))
+        share = (1 - own["gamma_1"]) * (1 - own["gamma_2"]) / (own["gamma_1"] * own["gamma_2"])
+        expected = sorted(np.roots([lag * other, lag + other, 1 - share]))
+        assert np.allclose(zeros_of(model, **given), expected, rtol=1e-9)
+        gain = model.transfer_matrix().bind(**given).rga(0)[0, 0].real
+        assert f"{gain:.2f}" == ("-0.64" if given else "1.40")
+        assert not given or f"{expected[1]:.3f}" == "0.013"
+
+
+def test_a_gantry_whose_encoders_are_held_has_the_modes_of_its_head_alone():
+    model, v = model_and_values("mechatronics/gantry")
+    expected = sorted(np.roots([v["m"], v["b"], v["k"]]), key=lambda z: z.imag)
+    assert np.allclose(zeros_of(model, ["X_1", "X_2"]), expected, rtol=1e-9)
+    assert zeros_of(model) == []  # with the head measured as well nothing is left to move unseen
+
+
+def test_a_rotor_in_one_magnetic_bearing_has_the_zeros_of_a_rotor_held_at_its_sensors():
+    # In z = x + j y and tau = alpha + j beta, without what B is given and with z = -c tau:
+    # forces and moments of A and B leave J tau'' - j J_p Omega tau' + ... = 0, in the force f of bearing A.
+    model, v = model_and_values("mechatronics/magnetic_bearing")
+    m, J, gyro, a, b, c, k = (v["m"], v["J"], v["J_p"] * v["Omega"], v["a"], v["b"], v["c"], v["k_s"])
+    # m z'' - k (2 z + (a - b) tau) = f and J tau'' - j gyro tau' - k ((a - b) z + (a^2 + b^2) tau) = a f:
+    # the moment less a times the force, with z = -c tau.
+    inertia = J + a * c * m
+    stiffness = -k * ((a**2 + b**2) - (a - b) * c) + a * k * ((a - b) - 2 * c)
+    expected = [r for sign in (1, -1) for r in np.roots([inertia, -1j * sign * gyro, stiffness])]
+    expected = sorted(expected, key=lambda z: (round(z.real, 6), z.imag))
+    found = sorted(
+        zeros_of(model, ["X_A", "Y_A"], ["i_xA", "i_yA"]), key=lambda z: (round(z.real, 6), z.imag)
+    )
+    assert np.allclose(found, expected, rtol=1e-9)

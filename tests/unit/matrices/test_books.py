@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from fractions import Fraction
 
 import numpy as np
 import pytest
 
 from symflex.expressions import format_expression
-from symflex.matrices import derive_matrix, determinant, interaction
-from tests.unit.matrices.models import model_of
+from symflex.matrices import derive_matrix, determinant, interaction, locate_matrix
+from symflex.roots.root import count_roots
+from tests.unit.matrices.models import model_of, numbers, of_functions, state_space
 
 HEAD = """
 symflex = 1
@@ -126,3 +128,112 @@ def test_the_satellite_has_no_determinant_that_vanishes():
         101,
         ring.generator("s") ** 2 + 100,
     )
+
+
+FRONT = "1/((s + 1)*(s + 2)*(s - 1))"
+JET = state_space(
+    numbers("-.0558 -.9968 .0802 .0415\n.598 -.115 -.0318 0\n-3.05 .388 -.465 0\n0 .0805 1 0"),
+    numbers(".0073 0\n-.475 .0077\n.153 .143\n0 0"),
+    numbers("0 1 0 0\n0 0 0 1"),
+)
+BENCHMARK = state_space(
+    numbers("1 0 0 0 0 0\n0 1 0 0 0 0\n0 0 3 0 0 0\n0 0 0 -4 0 0\n0 0 0 0 -1 0\n0 0 0 0 0 3"),
+    numbers("0 -1\n-1 0\n1 -1\n0 0\n0 1\n-1 -1"),
+    numbers("1 0 0 1 0 0\n0 1 0 1 0 1\n0 0 1 0 0 1"),
+)
+POLES_AND_ZEROS = {  # the model, and zeros and poles as they are printed; nothing where none is
+    "Skogestad and Postlethwaite 2005, example 4.8": (
+        of_functions(
+            [f"{FRONT}*(s - 1)*(s + 2)", "0", f"{FRONT}*(s - 1)^2"],
+            [f"-{FRONT}*(s + 1)*(s + 2)", f"{FRONT}*(s - 1)*(s + 1)", f"{FRONT}*(s - 1)*(s + 1)"],
+        ),
+        ["1"],
+        ["-2", "-2", "-1", "1"],
+    ),
+    "the same, example 4.7: no zero, though each entry has one": (
+        of_functions(
+            ["(s - 1)/(1.25*(s + 1)*(s + 2))", "s/(1.25*(s + 1)*(s + 2))"],
+            ["-6/(1.25*(s + 1)*(s + 2))", "(s - 2)/(1.25*(s + 1)*(s + 2))"],
+        ),
+        [],
+        ["-2", "-1"],
+    ),
+    "the same, example 4.10": (
+        of_functions(["(s - 1)/(s + 2)", "4/(s + 2)"], ["4.5/(s + 2)", "2*(s - 1)/(s + 2)"]),
+        ["4"],
+        ["-2"],
+    ),
+    "the same, example 3.8": (
+        of_functions(
+            ["1/((0.2*s + 1)*(s + 1))", "1/((0.2*s + 1)*(s + 1))"],
+            ["(1 + 2*s)/((0.2*s + 1)*(s + 1))", "2/((0.2*s + 1)*(s + 1))"],
+        ),
+        ["0.5"],
+        None,
+    ),
+    "Rosenbrock 1970": (
+        of_functions(["1/(s + 1)", "2/(s + 3)"], ["1/(s + 1)", "1/(s + 1)"]),
+        ["1"],
+        ["-3", "-1", "-1"],
+    ),
+    "MathWorks, Control System Toolbox, tzero": (
+        of_functions(["1/(s + 1)", "1/(s + 2)"], ["1/(s + 3)", "2/(s + 4)"]),
+        ["-2.5000-1.3229j", "-2.5000+1.3229j"],
+        None,
+    ),
+    "SLICOT, AB08ND: invariant zeros at -1 and 2, of which -1 is a hidden mode": (
+        BENCHMARK,
+        ["2.0000"],
+        None,
+    ),
+    "MathWorks, yaw damper of a 747 at Mach 0.8, 40,000 ft": (
+        JET,
+        None,
+        ["-5.63e-01", "-3.29e-02-9.47e-01j", "-3.29e-02+9.47e-01j", "-7.28e-03"],
+    ),
+}
+
+
+def agrees(root: complex, printed: str) -> bool:
+    """Tell whether both parts of a root are those in print, within half a unit of the last digit."""
+    parts = re.findall(r"-?[\d.]+(?:e-\d+)?", printed)
+    for value, text in zip((root.real, root.imag), [*parts, "0"], strict=False):
+        mantissa, _, exponent = text.partition("e")
+        unit = 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
+        if abs(value - float(text)) > 0.5001 * unit:
+            return False
+    return True
+
+
+@pytest.mark.parametrize("name", POLES_AND_ZEROS)
+def test_poles_and_zeros_are_those_in_print(name):
+    model, *printed = POLES_AND_ZEROS[name]
+    found = locate_matrix(model, digits=15)
+    assert found.located.certificate.certified
+    for roots, texts in zip((found.located.zeros, found.located.all_poles), printed, strict=True):
+        if texts is None:
+            continue
+        seen = [complex(r.re.mid(), r.im.mid()) for r in roots for _ in range(r.multiplicity)]
+        assert count_roots(roots) == len(texts)
+        ordered = sorted(seen, key=lambda z: (round(z.real, 9), z.imag))
+        assert all(agrees(root, text) for root, text in zip(ordered, texts, strict=True)), (ordered, texts)
+
+
+def test_a_zero_has_the_directions_in_print():
+    # Skogestad and Postlethwaite 2005, example 4.10: inputs 0.80, -0.60 and outputs 0.83, -0.55.
+    model, *_ = POLES_AND_ZEROS["the same, example 4.10"]
+    (direction,) = locate_matrix(model).directions
+    for vector, printed in ((direction.inputs, (0.80, -0.60)), (direction.outputs, (0.83, -0.55))):
+        own = np.array([complex(x).real for x in vector])
+        own = own / np.linalg.norm(own) * np.sign(own[0])
+        assert np.allclose(own, printed, atol=0.0051)
+
+
+def test_relative_gains_of_books_are_those_in_print():
+    # The same, section 10.6: a cracker with three inputs; and the column in the DV configuration.
+    cracker = of_functions(["16.8", "30.5", "4.30"], ["-16.7", "31.0", "-1.41"], ["1.27", "54.1", "5.40"])
+    found = interaction(derive_matrix(cracker))
+    printed = [[1.50, 0.99, -1.48], [-0.41, 0.97, 0.45], [-0.08, -0.95, 2.03]]
+    assert np.allclose(found.values(found.relative), printed, atol=0.0051)
+    column = interaction(derive_matrix(of_functions(["-87.8", "1.4"], ["-108.2", "-1.4"])))
+    assert np.allclose(column.values(column.relative), [[0.448, 0.552], [0.552, 0.448]], atol=0.00051)
