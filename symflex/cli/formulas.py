@@ -182,15 +182,15 @@ def derive(spec: Specification, given: DeriveOptions) -> int:
     for tf in derived:
         if (terms := terms_to_print(tf, given.form)) > LONG:
             note(f"printing {tf.name}: about {terms} terms; --representation nested is shorter")
+    is_json = given.as_json or given.format == "json"
     if given.short is given.order is given.spread is None:
-        forms, sentences = print_forms(derived, given.form, given.digits)
+        forms, sentences = print_forms(derived, given.form, given.digits, is_read=not is_json)
         for sentence in sentences:
             note(sentence)
     else:
         from symflex.symbolic.short import approximation
 
         derived, forms = zip(*(approximation(tf, given) for tf in derived), strict=True)
-    is_json = given.as_json or given.format == "json"
     printed_forms = forms if is_json else with_shared_denominators(derived, forms)
     entries = list(zip(derived, printed_forms, strict=True))
     # Each format is imported where it is printed, so that a terminal does not wait for LaTeX.

@@ -280,7 +280,7 @@ def _formula(member: Member) -> str:
     """Return a transfer function in its shortest form, or a sentence where it would be long."""
     tf, rows = member.tf, None
     if not member.is_fixed:
-        form, _ = with_hidden(tf, print_form(tf))
+        form, _ = with_hidden(tf, print_form(tf, is_read=True))
         rows = transfer_function_mathml(tf, form)
     size = sum(len(r.left) + sum(map(len, r.pieces)) for r in rows or ())
     if not rows or size > LONGEST_FORMULA:

@@ -138,7 +138,7 @@ def bound_html(bound: BoundTransferFunction) -> str:
     tf = bound.source
     parameters = {p.name: p for p in tf.model.parameters}
     labels = model_labels(tf.model)
-    formula = notebook_latex(tf, print_form(tf))
+    formula = notebook_latex(tf, print_form(tf, is_read=True))
     lines = [f"<div><div>{escape_html(bound.name)}, {escape_html(tf.quantity)}</div>"]
     if formula is not None:
         lines.append(f"<div>$\\displaystyle {escape_label(formula)}$</div>")

@@ -97,9 +97,9 @@ def _in_groups(tf: TransferFunction) -> SymbolicForm:
     rows, images = _named_groups(tf, naming, groups, parameters)
     function, lines = _in_names(tf, form, freed | images)
     size = written_powers({Name(name): scale[name] for name in (*parameters, S.name) if name in scale})
-    head = Row(tf.name, " = scale *", rf"{ratio_latex(tf)} &= G_0 \cdot", function)
+    head = Row(tf.name, " = scale *", rf"{ratio_latex(tf)} &= \text{{scale}} \cdot", function)
     named = [Row(name, " =", f"{symbol(name, {}).latex} &=", line) for name, line in lines.items()]
-    sized = _row(tf, "scale", size)._replace(left="G_0 &=", unit=tf.unit)
+    sized = _row(tf, "scale", size)._replace(left=r"\text{scale} &=", unit=tf.unit)
     found = SymbolicForm(tf, (head, *named, sized, *rows))
     _check(found)
     return found

@@ -34,7 +34,16 @@ from symflex.print.roots import SHORT_DIGITS
 from symflex.print.text import INDENT, WIDTH, broken
 from symflex.roots import Root, figure
 from symflex.roots.passivity import energy_proof
-from symflex.symbolic.routh import Factor, Signs, SymbolicRelation, aligned, read, relation_of, without_minus
+from symflex.symbolic.routh import (
+    Factor,
+    Signs,
+    SymbolicRelation,
+    aligned,
+    read,
+    relation_of,
+    without_content,
+    without_minus,
+)
 from symflex.transfer import TransferFunction
 from symflex.transfer.lowest_terms import cancel
 
@@ -151,7 +160,8 @@ class LetterReader:
         degree = len(c) - 1
         if not degree or not self.tf.ring.used_in([factor]) - {LAPLACE} or len(factor) == 1:
             return None
-        printed = self.printer.arranger.collected(factor)
+        arranger = self.printer.arranger
+        printed = arranger.grouped_by_s(without_content(arranger.closed(factor)))
         silent = SymbolicFactor(kind, None, note=f"a factor of degree {degree} in s has no short formula")
         if len(factor) > MOST_TERMS:
             return silent
@@ -163,7 +173,8 @@ class LetterReader:
         ):
             return None
         formulas, kinds = tuple(self._formulas(c, of_factor)), tuple(self._kinds(kind, c))
-        return SymbolicFactor(kind, printed, formulas, kinds) if formulas or kinds else silent
+        equation = without_minus(printed, self.turns.turning)
+        return SymbolicFactor(kind, equation, formulas, kinds) if formulas or kinds else silent
 
     def _formulas(self, c: Sequence[fmpz_mpoly], roots: Sequence[Root]) -> Iterator[RootFormula]:
         """Yield the formulas of a factor whose values are those of its roots."""

@@ -13,9 +13,10 @@ determinants ``D_(n-1)``, ``D_(n-3)``, ... (Liénard and Chipart 1914; Gantmache
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import prod
+from itertools import combinations
+from math import gcd, isqrt, prod
 from random import Random
 from typing import Final, Literal
 
@@ -40,6 +41,7 @@ from symflex.expressions import (
     nodes,
     number,
     parse,
+    power,
     product_of,
     quotient,
     sum_of,
@@ -50,7 +52,7 @@ from symflex.model.loss_factors import check_causal
 from symflex.print.forms import CLOSED, Arranger
 from symflex.print.forms.arrange import length
 from symflex.print.forms.notation import Line, constant_symbols, reachable
-from symflex.print.forms.shapes import SumSigns, rebuilt
+from symflex.print.forms.shapes import SumSigns, of_powers, powers_of, rebuilt
 from symflex.print.latex import latex_expression
 from symflex.print.latex.equation import model_labels
 from symflex.print.text import broken
@@ -62,6 +64,7 @@ from symflex.transfer.expansion import Expansion
 from symflex.transfer.of_model import UNASKED, assemble, derive_all, pick_pairs
 
 LONGEST: Final = 40  # terms of a condition that a person still reads: half a page
+FEW: Final = 20  # terms of a condition in which squares of sums are sought
 MOST_TERMS: Final = 20_000  # terms of a determinant, which take about a second
 SQUARES: Final = 3  # generators one after the other whose squares are completed to prove a sign
 POINTS: Final = 12
@@ -256,14 +259,39 @@ def relation_of(arranger: Arranger, polynomial: fmpz_mpoly, sign: Sign, turns: S
     """Return a condition in its shortest print: all on the left, or no minus sign."""
     if len(polynomial) > LONGEST:
         return SymbolicRelation(len(polynomial), sign, None)
+    polynomial = without_content(arranger.closed(polynomial))
     parts = [{m: c * sign for m, c in polynomial.terms() if c * sign > 0} for sign in (1, -1)]
     above, below = (arranger.grouped(polynomial.context().from_dict(part)) for part in parts)
     left = without_minus(arranger.grouped(polynomial), turns)
     tried = [(left, number(0)), (turns.oriented(above), turns.oriented(below))]
+    tried += [(without_minus(each, turns), number(0)) for each in _with_squares(arranger, polynomial)]
     if isinstance(left, Sum):
         taken = [term.operand for term in left.terms if isinstance(term, Negative)]
         tried.append((sum_of(t for t in left.terms if not isinstance(t, Negative)), sum_of(taken)))
     return SymbolicRelation(len(polynomial), sign, min(tried, key=lambda sides: length(*sides)))
+
+
+def _with_squares(arranger: Arranger, polynomial: fmpz_mpoly) -> Iterator[Expression]:
+    """Yield a sum as ``(a - b)^2`` and the rest, for each pair of squares in it whose product it has, too."""
+    terms = {tuple(map(int, m)): int(c) for m, c in polynomial.terms()}
+    roots = {
+        m: isqrt(c) for m, c in terms.items() if c > 0 and isqrt(c) ** 2 == c and not any(e % 2 for e in m)
+    }
+    for (m, x), (n, y) in combinations(roots.items(), 2) if len(terms) <= FEW else ():
+        between = tuple((a + b) // 2 for a, b in zip(m, n, strict=True))
+        if abs(terms.get(between, 0)) == 2 * x * y:
+            halves = ({tuple(e // 2 for e in k): z} for k, z in ((m, x), (n, y)))
+            a, b = (polynomial.context().from_dict(half) for half in halves)
+            square = a - b if terms[between] < 0 else a + b
+            rest = polynomial - square**2
+            yield sum_of(
+                [power(arranger.grouped(square), 2), *([arranger.grouped(rest)] if len(rest) else [])]
+            )
+
+
+def without_content(polynomial: fmpz_mpoly) -> fmpz_mpoly:
+    """Return a polynomial divided by the whole number that divides all of it, as closed definitions bring."""
+    return polynomial / gcd(*map(int, polynomial.coeffs())) if len(polynomial) else polynomial
 
 
 def without_minus(expression: Expression, turns: SumSigns) -> Expression:
@@ -271,6 +299,8 @@ def without_minus(expression: Expression, turns: SumSigns) -> Expression:
 
     def absorbed(whole: Expression) -> Expression:
         match whole:
+            case Quotient() if gcd(*(powers_of(side)[0].numerator for side in whole.children)) > 1:
+                return absorbed(of_powers(*powers_of(whole)))
             case Negative(Quotient(above, below)) | Quotient(Negative(above), below):
                 if (turned := _turned(above)) is None and (other := _turned(below)) is not None:
                     return quotient(above, other)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from importlib import import_module
@@ -24,7 +25,7 @@ from symflex.expressions import (
 )
 from symflex.print.forms.arrange import Arranger, is_long_product, length, reading
 from symflex.print.forms.arranged import Arranged
-from symflex.print.forms.definitions import definitions_form, shows_origin
+from symflex.print.forms.definitions import definitions_form, shows_origin, tidied_sum
 from symflex.print.forms.hidden import hidden_expressions, with_hidden
 from symflex.print.forms.naming import Naming, names_of
 from symflex.print.forms.notation import plain_printer, reachable
@@ -47,7 +48,7 @@ from symflex.print.forms.printed import (
     lacks,
     require,
 )
-from symflex.print.forms.shapes import S, powers_of, shaped
+from symflex.print.forms.shapes import S, powers_of, rebuilt, shaped
 from symflex.print.read_back import read_back
 from symflex.transfer import AnyTransferFunction, NestedTransferFunction, TransferFunction
 
@@ -114,19 +115,29 @@ LOOKED_UP = 1.2  # how many times as long functions read that have to be looked 
 SHARED = 5  # characters that a factor before a sum is worth which all its terms have
 FEW = 60  # terms up to which every form is arranged: that takes some hundredths of a second
 ONE_LINE = 60  # characters of a denominator beyond which functions that share it print it once
+REPEATED = "P"  # the name of a sum that is repeated
+REPEATED_LENGTH, REPEATED_CONSTANT = 25, 40  # characters from which that is long, and without s
+REPEATED_SAVING = 50  # characters that its name must save
 MORE = 1.25  # how many times the fewest terms another form may have, and still print shorter
 
 
 def print_form(
-    tf: AnyTransferFunction, form: str | None = None, digits: int = 6, arranged: Arranged | None = None
+    tf: AnyTransferFunction,
+    form: str | None = None,
+    digits: int = 6,
+    arranged: Arranged | None = None,
+    *,
+    is_read: bool = False,
 ) -> PrintedForm:
     """Return a transfer function in the named form, or in the one that prints shortest.
 
     ``form`` is a key of :data:`FORMS`. What is ``arranged`` already, of functions of the same model, is not
-    arranged again. Raises SF902 when there is no such form, SF229 when it needs numbers; SF992 when the form,
-    read back, is not the function.
+    arranged again. Where a person reads it, long sums that are repeated are names. Raises SF902 when there is
+    no such form, SF229 when it needs numbers; SF992 when the form, read back, is not the function.
     """
     made = _arranged(tf, form, digits, arranged or Arranged())
+    if is_read and isinstance(tf, TransferFunction) and made.name not in AS_ARRANGED:
+        made = with_repeated_named(tf, made)
     read_back(tf, made, digits if made.name in DECIMAL_FORMS else None)
     return in_s(tf, made)
 
@@ -304,8 +315,47 @@ def _explained(tf: TransferFunction, made: PrintedForm, arranged: Arranged) -> P
     return replace(made, where=(*made.where, *lines), definitions=frozenset(name for name, _ in lines))
 
 
+def with_repeated_named(tf: TransferFunction, form: PrintedForm) -> PrintedForm:
+    """Return a form in which a long sum that stands in several places is a name: ``P*(c*cosh(q) + P*s)``.
+
+    Sides are named one after the other, so that functions of one denominator share it.
+    """
+    naming, put = Naming.of(tf), dict[Expression, Expression]()
+    naming.keep(name for name, _ in form.where)
+
+    def named(*parts: Expression) -> list[Expression]:
+        """Return parts with names, and then what the new ones stand for, which bears names, too."""
+        each = list(parts)
+        for total, name in put.items():
+            each = [_with(part, total, name) for part in each]
+        while (repeated := _most_repeated(each)) is not None:
+            put[repeated] = Name(*naming.take(REPEATED))
+            each = [*(_with(part, repeated, put[repeated]) for part in each), repeated]
+        return each
+
+    den, *below = named(form.den)
+    num, *above = named(form.num)
+    called = (name.name for name in put.values() if isinstance(name, Name))
+    totals = (tidied_sum(total, tf.base.index) for total in (*below, *above))
+    return replace(form, num=num, den=den, where=(*zip(called, totals, strict=True), *form.where))
+
+
+def _with(whole: Expression, total: Expression, name: Expression) -> Expression:
+    """Return an expression with a name in place of a sum."""
+    return rebuilt(whole, lambda part: name if part == total else part)
+
+
+def _most_repeated(parts: Sequence[Expression]) -> Sum | None:
+    """Return the sum whose name saves most characters, None where none saves many."""
+    counts = Counter(n for part in parts for n in nodes(part) if isinstance(n, Sum) and n not in parts)
+    least = {n: REPEATED_LENGTH if S in names(n) else REPEATED_CONSTANT for n, m in counts.items() if m > 1}
+    saved = {n: (counts[n] - 1) * length(n) for n, chars in least.items() if length(n) >= chars}
+    best = max(saved, key=lambda n: saved[n], default=None)
+    return best if best is not None and saved[best] >= REPEATED_SAVING else None
+
+
 def print_forms(
-    tfs: Sequence[AnyTransferFunction], form: str | None = None, digits: int = 6
+    tfs: Sequence[AnyTransferFunction], form: str | None = None, digits: int = 6, *, is_read: bool = True
 ) -> tuple[tuple[PrintedForm, ...], tuple[str, ...]]:
     """Return all functions in a form, and a sentence on each that lacks it; SF902 when none has it."""
     printed: list[PrintedForm] = []
@@ -314,7 +364,7 @@ def print_forms(
     arranged = Arranged()
     for tf in tfs:
         try:
-            printed.append(print_form(tf, form, digits, arranged))
+            printed.append(print_form(tf, form, digits, arranged, is_read=is_read))
             own = [name for name, _ in tf.model.analysis.print]
             if own and form is None and not any(name in own for name, _ in printed[-1].where):
                 sentences.append(
@@ -322,7 +372,7 @@ def print_forms(
                 )
         except UsageError as error:
             refusal = refusal or error
-            printed.append(print_form(tf, None, digits, arranged))
+            printed.append(print_form(tf, None, digits, arranged, is_read=is_read))
             sentences.append(f"{tf.name} has no {form} form: printed in its {printed[-1].name} form")
     if refusal is not None and len(sentences) == len(printed):
         raise refusal

@@ -21,7 +21,7 @@ from symflex.print.forms.arrange import (
     reading,
 )
 from symflex.print.forms.arranged import Arranged
-from symflex.print.forms.kept import REWRITE_LIMIT, in_definitions, is_divisor
+from symflex.print.forms.kept import REWRITE_LIMIT, divisor_of, in_definitions, is_divisor
 from symflex.print.forms.notation import constant_symbols
 from symflex.print.forms.polynomial import in_kernels
 from symflex.print.forms.printed import PrintedForm
@@ -186,7 +186,7 @@ def _rewritten(tf: TransferFunction, arranger: Arranger, value: Factored) -> Exp
     Factors of a long product stay as they are.
     """
     ring, own = tf.base, value.over(tf.base)
-    divisors = [(name, value.expand()) for name, value in tf.definitions if is_divisor(value)]
+    divisors = [divisor_of(name, value) for name, value in tf.definitions if is_divisor(value)]
 
     def in_defined(polynomial: fmpz_mpoly) -> fmpz_mpoly:
         is_short = len(polynomial) <= REWRITE_LIMIT

@@ -59,10 +59,10 @@ class KeptDefinitions:
         return Ring((*names_[:place], *more, *names_[place:]))
 
     @cached_property
-    def _divisors(self) -> tuple[tuple[str, fmpz_mpoly, bool], ...]:
-        """Definitions over :attr:`ring`, and whether they bear s."""
-        values = ((name, value.over(self.ring).expand(), value) for name, value in self.values)
-        return tuple((name, divisor, value.depends_on(LAPLACE)) for name, divisor, value in values)
+    def _divisors(self) -> tuple[tuple[fmpz_mpoly, fmpz_mpoly, bool], ...]:
+        """Multiples of definitions over :attr:`ring`, what these are there, and whether they bear s."""
+        values = ((name, value.over(self.ring), value) for name, value in self.values)
+        return tuple((*divisor_of(name, over), value.depends_on(LAPLACE)) for name, over, value in values)
 
     def rewrite(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
         """Return a polynomial of the form's ring in the definitions free of s that shorten it."""
@@ -70,25 +70,35 @@ class KeptDefinitions:
         result = ring.taken_over(polynomial, self.source.names)
         if len(result) > REWRITE_LIMIT:
             return result
-        free = [(n, d) for n, d, has_s in self._divisors if not has_s]
+        free = [(multiple, d) for multiple, d, has_s in self._divisors if not has_s]
         return in_definitions(result, free, ring)
 
     def name_of(self, polynomial: fmpz_mpoly) -> Name | None:
         """Return the definition that a polynomial of the form's ring is."""
         wanted = self.ring.taken_over(polynomial, self.source.names)
-        return next((Name(name) for name, divisor, _ in self._divisors if divisor == wanted), None)
+        own = zip(self.values, self._divisors, strict=True)
+        return next((Name(n) for (n, x), (_, d, _) in own if d == wanted and x.unit == 1), None)
 
 
 def is_divisor(value: Factored) -> bool:
-    """Tell whether a definition is a polynomial with whole coefficients, by which others can be divided."""
-    return not (value.is_constant or value.denominator().factors) and value.unit.denominator == 1
+    """Tell whether a definition is a polynomial, or a sum over a whole number: others are divided by it."""
+    if value.is_constant or value.denominator().factors:
+        return False
+    is_sum = any(len(f) > 1 for f, _ in value.factors)
+    return value.unit.denominator == 1 or (abs(value.unit.numerator) == 1 and is_sum)
+
+
+def divisor_of(name: str, value: Factored) -> tuple[fmpz_mpoly, fmpz_mpoly]:
+    """Return a multiple of a definition with whole coefficients in its name, and as the polynomial it is."""
+    times = value.unit.denominator
+    return value.ring.generator(name) * times, (value * times).expand()
 
 
 def in_definitions(
-    polynomial: fmpz_mpoly, divisors: Sequence[tuple[str, fmpz_mpoly]], ring: Ring
+    polynomial: fmpz_mpoly, divisors: Sequence[tuple[fmpz_mpoly, fmpz_mpoly]], ring: Ring
 ) -> fmpz_mpoly:
     """Return a polynomial in terms of definitions, each used when it saves terms, or is a product."""
-    for name, divisor in divisors:
+    for multiple, divisor in divisors:
         inner = tuple(int(d) > 0 for d in divisor.degrees())
         # What stands before different powers of all else is decided apart.
         parts: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
@@ -99,7 +109,7 @@ def in_definitions(
         polynomial = ring.constant(0)
         for terms in parts.values():
             part = ring.context.from_dict(terms)
-            rewritten = _in_powers_of(part, divisor, ring.generator(name), ring)
+            rewritten = _in_powers_of(part, divisor, multiple, ring)
             is_shorter = len(rewritten) < len(part) or (len(divisor) == 1 and rewritten != part)
             polynomial += rewritten if is_shorter else part
     return polynomial

@@ -67,6 +67,8 @@ MORE: Final = 1.3  # how many times as long a form with decimals may be
 SCALED: Final = ("monic", "constant")  # forms that say what a coefficient is divided by
 LINE: Final = 4  # characters by which one line in place of two has to be shorter than these
 RATIOS: Final = (("sinh", "cosh", "tanh"), ("sin", "cos", "tan"))
+OTHERS: Final = {"cosh": "sinh", "cos": "sin"}
+ONE: Final = number(1)
 S: Final = Name(LAPLACE)
 PI: Final = Name("pi")
 
@@ -279,6 +281,9 @@ class SumSigns:
 
     def _sum(self, terms: Sequence[Expression]) -> Expression:
         """Return a sum as it is written in the model, or turned if it is negative."""
+        terms = _without_ones(terms)
+        if len(terms) == 1:
+            return terms[0]
         turned = [negative(t) for t in terms]
         first = terms[0]
         if (
@@ -345,6 +350,20 @@ class SumSigns:
         except KeyError:
             return 0
         return int(value.real > 0) - int(value.real < 0)
+
+
+def _without_ones(terms: Sequence[Expression]) -> Sequence[Expression]:
+    """Return terms with ``sinh(q)^2`` for ``cosh(q)^2 - 1``, and ``-sin(q)^2`` for ``cos(q)^2 - 1``."""
+    for term in terms:
+        front, powers = powers_of(term)
+        (call, n), *more = powers.items() if powers else ((ONE, 0),)
+        one = number(-front)
+        if more or n != 2 or not isinstance(call, Call) or call.name not in OTHERS or one not in terms:  # noqa: PLR2004
+            continue
+        square = power(replace(call, name=OTHERS[call.name]), 2)
+        joined = product_of([number(front if call.name == "cosh" else -front), square])
+        return _without_ones([joined if t is term else t for t in terms if t != one])
+    return terms
 
 
 def _base(factor: Expression) -> Expression:

@@ -258,3 +258,17 @@ def test_a_square_of_a_difference_stays_below_its_root() -> None:
     """omega is abs(a - b), whichever is larger."""
     (zeros, *_), _ = said_of("a b", SIGNAL.format("u*(s^2 + (a - b)^2)/s^3"))
     assert str(zeros.formulas[0]) == "omega_z = sqrt((a - b)^2)"
+
+
+def test_the_equation_of_a_factor_keeps_definitions_closed_and_begins_brackets_with_no_minus_sign() -> None:
+    # Sampling poles of peak-current mode (Ridley 1991): s^2 + pi^2 f K s + (pi f)^2, K half a sum.
+    text = """definitions = { K = "m*(1 - D) - 1/2" }
+inputs.u = {}
+outputs.y = "u/(1 + K/f*s + s^2/(pi*f)^2)"
+"""
+    ((factor,), _) = said_of("f m D", text)
+    assert factor.factor is not None
+    assert format_expression(factor.factor) == "s^2 + pi^2*f*K*s + pi^2*f^2"
+    said = [*factor.lines()]
+    assert any(line.startswith("omega_p = pi*f") for line in said)
+    assert any(" if 4 > pi^2*K^2" in line for line in said)

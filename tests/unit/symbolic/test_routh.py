@@ -260,6 +260,7 @@ def test_definitions_stay_closed_as_letters_of_the_signs_that_follow_from_their_
     k_11, k_12, k_22, k_3, mu = sympy.symbols("k_11 k_12 k_22 k_3 mu")
     slope = k_12 * (k_12 - mu * k_3)
     assert ours == {sympy.expand(k_11 * k_22 - slope), sympy.expand((k_11 - k_22) ** 2 + 4 * slope)}
+    assert "(k_11 - k_22)^2 + 4*k_12*(k_12 - mu*k_3) > 0" in str(found)
     assert [name for name, _ in found.where] == [*BRAKE]
     assert "for positive values of all parameters" in str(found)
 
