@@ -55,9 +55,14 @@ RIGHT_HALF_PLANE: Final = "#FBEDE4"  # a tint, pale enough for every line on it
 
 def magnitude_over_phase(width: float, height: float, ratio: float, units: int = 1) -> tuple[Axes, ...]:
     """Return axes of a new figure [inches]: for magnitudes of each unit, ``ratio`` times those for phases."""
+    return panels_below(width, height, [ratio] * units + [1])
+
+
+def panels_below(width: float, height: float, ratios: Sequence[float]) -> tuple[Axes, ...]:
+    """Return axes of a new figure [inches], below each other over one axis, with heights in these ratios."""
     figure = new_figure(width, height)
     figure.set_layout_engine("constrained", h_pad=0.02, w_pad=0.03, hspace=0.03)
-    panels = tuple(figure.subplots(units + 1, 1, sharex=True, height_ratios=[ratio] * units + [1]))
+    panels = tuple(figure.subplots(len(ratios), 1, sharex=True, squeeze=False, height_ratios=ratios)[:, 0])
     for axes in panels:
         axes.grid(visible=True)
     return panels

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 from itertools import cycle
+from math import ceil
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -13,7 +14,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from symflex.analysis.time_response import INTEGRATIONS, SampleTimes, responses_by_default, time_response
-from symflex.figures.axes import FREE, AxisLimits, Canvas, add_legend_above, root_figure, write_title
+from symflex.figures.axes import (
+    FREE,
+    AxisLimits,
+    Canvas,
+    add_legend_above,
+    panels_below,
+    root_figure,
+    write_title,
+)
 from symflex.figures.style import (
     COLOURS,
     COLUMN_INCHES,
@@ -30,10 +39,13 @@ from symflex.figures.style import (
 from symflex.transfer import AnyBoundFunction
 
 if TYPE_CHECKING:
+    from matplotlib.lines import Line2D
+
     from symflex.analysis.input_shaping import InputShaper
     from symflex.analysis.time_response import EnclosedResponse
 
 HEIGHT_INCHES: Final = 2.2
+UNIT_INCHES: Final = 1.0  # height of a further panel
 FARTHEST: Final = 0.5  # how far a band of radii is drawn beyond the curve, as a share of its height
 VISIBLE: Final = 1e-3  # radius over the largest value from which its band is drawn: about the width of a line
 PREFIXES: Final = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns"))
@@ -46,7 +58,7 @@ TICK: Final = 5  # percent of residual vibration that designers ask for
 
 
 def draw_responses(kind: str, bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
-    """Draw step or impulse responses, without impulses; see :func:`symflex.figures.draw`."""
+    """Draw step or impulse responses without impulses, a panel a unit; see :func:`symflex.figures.draw`."""
     if canvas.frame.x:
         times = SampleTimes.evenly(Fraction(canvas.frame.x[1]), POINTS)
         responses = [time_response(bound, kind, times, DIGITS) for bound in bounds]
@@ -54,18 +66,34 @@ def draw_responses(kind: str, bounds: Sequence[AnyBoundFunction], canvas: Canvas
         responses = responses_by_default(bounds, kind, POINTS, DIGITS)
     width = canvas.width or COLUMN_INCHES
     lines = [*title_lines(canvas.title, width), *_said(responses, width)]
-    units = {response.unit for response in responses}
-    axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * (len(lines) + 1))
+    units = list(dict.fromkeys(response.unit for response in responses))
+    columns = min(len(bounds), len(DASHES) - 1)
+    height = HEIGHT_INCHES + LINE_INCHES * (len(lines) + ceil(len(bounds) / columns))
+    if canvas.axes or len(units) == 1:
+        panels = dict.fromkeys(units, canvas.one_panel(height))
+    else:
+        height += UNIT_INCHES * (len(units) - 1)
+        panels = dict(zip(units, panels_below(width, height, [1] * len(units)), strict=True))
+    has_units = len(units) > 1 and bool(canvas.axes)  # in the legend: the user's axes show all units
+    handles = []
     looks = zip(cycle(COLOURS), cycle(DASHES), strict=False)
     for bound, response, look in zip(bounds, responses, looks, strict=False):
         label = label_of_tf(bound.source)
-        if len(units) > 1 and (unit := label_of_unit(response.unit)):
+        if has_units and (unit := label_of_unit(response.unit)):
             label = f"{label} [{unit}]"
-        _draw_curve(axes, response, look, label)
-    _label(axes, responses[0], units.pop() if len(units) == 1 else "", canvas.frame)
-    add_legend_above(axes, min(len(bounds), len(DASHES) - 1))
-    write_title(root_figure(axes), lines)
-    return root_figure(axes)
+        handles += _draw_curve(panels[response.unit], response, look, label)
+    for unit, axes in panels.items():
+        _label(axes, responses[0], "" if has_units else unit, canvas.frame)
+    (top, *_), last = panels.values(), [*panels.values()][-1]
+    for axes in panels.values():
+        if axes is not last:
+            axes.set_xlabel("")
+            axes.tick_params(labelbottom=False)
+    figure = root_figure(top)
+    figure.align_ylabels(list(panels.values()))
+    add_legend_above(top, columns, handles=None if canvas.axes else handles)
+    write_title(figure, lines)
+    return figure
 
 
 def draw_in_time(
@@ -106,7 +134,9 @@ def _prefix(response: EnclosedResponse) -> tuple[float, str]:
     return next((prefix for prefix in PREFIXES if last >= prefix[0]), PREFIXES[-1])
 
 
-def _draw_curve(axes: Axes, response: EnclosedResponse, look: tuple[str, object], label: str | None) -> None:
+def _draw_curve(
+    axes: Axes, response: EnclosedResponse, look: tuple[str, object], label: str | None
+) -> list[Line2D]:
     values, radius = response.values, response.radius
     scale, _ = _prefix(response)
     across = response.times / scale
@@ -117,7 +147,7 @@ def _draw_curve(axes: Axes, response: EnclosedResponse, look: tuple[str, object]
         low = np.maximum(values - radius, values.min() - beyond)
         high = np.minimum(values + radius, values.max() + beyond)
         axes.fill_between(across, low, high, color=colour, alpha=0.2, linewidth=0)
-    axes.plot(across, values, color=colour, linestyle=dash, label=label)
+    return axes.plot(across, values, color=colour, linestyle=dash, label=label)
 
 
 def _label(axes: Axes, response: EnclosedResponse, unit: str, frame: AxisLimits) -> None:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import cycle, pairwise
-from math import pi
+from math import ceil, floor, hypot, log10, pi
 from typing import Final
 
 import numpy as np
@@ -230,7 +230,26 @@ def _draw_holes(axes: Axes, locus: RootLocus) -> None:
         axes.add_patch(ring)
 
 
-Curve = tuple["npt.NDArray[np.complex128]", "StabilityVerdict"]
+@dataclass(frozen=True)
+class AxisCurve:
+    """What is drawn along the imaginary axis."""
+
+    frequency_hz: npt.NDArray[np.float64]  # increasing
+    values: npt.NDArray[np.complex128]
+    verdict: StabilityVerdict  # what is known of its poles
+
+    @classmethod
+    def of(
+        cls,
+        frequency_hz: npt.NDArray[np.float64],
+        values: npt.NDArray[np.complex128],
+        verdict: StabilityVerdict,
+    ) -> AxisCurve:
+        """Return a curve without the places where it is infinite."""
+        is_finite = np.isfinite(values)
+        return cls(frequency_hz[is_finite], values[is_finite], verdict)
+
+
 """Values along the imaginary axis, and what is known of the poles."""
 WIDENED: Final = 10.0  # how far beyond the band of poles and zeros the curve is drawn, to both sides
 REACHES: Final = (1.5, 2.5)  # half the side of the square shown of a loop gain, about -1
@@ -240,6 +259,11 @@ OBLONG: Final = 4.0  # limits asked for whose ratio exceeds this have a scale ea
 LEGEND_POINTS: Final = 8.0
 LINE_POINTS: Final = 34.0  # length of a legend's line with its gaps: 2 of handle, 0.8 and 1.4, in letters
 WITHIN: Final = 0.9  # an arrow stands in so much of what is shown
+SHORT_BRANCH, LONG_BRANCH = 0.4, 2.5
+"""Lengths of a branch over the reach of the axes from which on it has an arrow, and several."""
+MIRRORED_POINT: Final = 8  # size of the arrows of negative frequencies
+MOST_MARKS, MARKS_APART = 6, 0.13
+"""Frequencies written beside a curve, and how far they are apart, in widths of the axes."""
 
 
 def draw_nyquist(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
@@ -259,7 +283,7 @@ def draw_loop_gain(loop: AnyLoop, canvas: Canvas) -> Figure:
 def draw_curves(
     drawn: Sequence[AnyBoundFunction] | AnyLoop,
     canvas: Canvas,
-    drawing: Callable[[Axes, list[npt.NDArray[np.complex128]], list[str], Canvas, bool], None],
+    drawing: Callable[[Axes, list[AxisCurve], list[str], Canvas, bool], None],
 ) -> Figure:
     """Draw functions or a loop gain along the imaginary axis, each with its label."""
     width, said = canvas.width or COLUMN_INCHES, list[str]()
@@ -276,12 +300,11 @@ def draw_curves(
     else:
         followed = [_curve(bound, canvas) for bound in drawn]
         labels = [label_of_tf(bound.source) for bound in drawn]
-    curves, poles = [list(one) for one in zip(*followed, strict=True)]
-    labels = [label + _open_poles(verdict) for label, verdict in zip(labels, poles, strict=True)]
+    labels = [label + _open_poles(curve.verdict) for label, curve in zip(labels, followed, strict=True)]
     columns = _columns(labels, width)
     lines = [line for text in (canvas.title, *said) for line in title_lines(text, width)]
     axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * (len(lines) - (-len(labels) // columns)))
-    drawing(axes, curves, labels, canvas, is_loop)
+    drawing(axes, followed, labels, canvas, is_loop)
     axes.tick_params(pad=4.5)  # ends of a square may have ticks next to their corner
     # A title of the figure would stand over a legend outside of the axes.
     legend = canvas.legend(axes, ncols=columns, frameon=False, title="\n".join(lines))
@@ -300,30 +323,87 @@ def verdict_of_closed(loop: AnyLoop, gain: Fraction) -> StabilityVerdict:
 
 
 def _draw_about_one(
-    axes: Axes, curves: list[npt.NDArray[np.complex128]], labels: list[str], canvas: Canvas, is_loop: bool
+    axes: Axes, curves: list[AxisCurve], labels: list[str], canvas: Canvas, is_loop: bool
 ) -> None:
-    """Draw curves in the plane of their values, with the point -1 and the unit circle."""
+    """Draw curves in the plane of their values, with the point -1, the unit circle and some frequencies."""
     draw_zero_lines(axes)
     circle = np.exp(1j * np.linspace(0, 2 * np.pi, 361))
     axes.plot(circle.real, circle.imag, ":", color=QUIET, linewidth=0.7, zorder=1)
-    reach = _reach(np.concatenate(curves), is_loop=is_loop)
+    reach = _reach(np.concatenate([curve.values for curve in curves]), is_loop=is_loop)
     across, upwards = canvas.frame.x or (-reach, reach), canvas.frame.y or (-reach, reach)
     axes.set_xlim(*across)
     axes.set_ylim(*upwards)
     reach = max(map(abs, (*across, *upwards)))
     for curve, label, colour in zip(curves, labels, cycle(COLOURS), strict=False):
-        values = drawable(curve, reach)
+        values = drawable(curve.values, reach)
         axes.plot(values.real, values.imag, "-", color=colour, linewidth=1.0, zorder=2, label=label)
         axes.plot(values.real, -values.imag, "--", color=colour, linewidth=0.6, zorder=2)
     if reach > 1:
         axes.plot([-1], [0], "+", color="black", markersize=8, markeredgewidth=1.1, zorder=4)
     if 1 / OBLONG < (across[1] - across[0]) / (upwards[1] - upwards[0]) < OBLONG:
         axes.set_aspect("equal", adjustable="box")
-    for values, colour in zip(curves, cycle(COLOURS), strict=False):
-        point_along(axes, values, colour)
+    marked = list[complex]()
+    for curve, colour in zip(curves, cycle(COLOURS), strict=False):
+        for branch in _branches(axes, curve.values, LONG_BRANCH * reach):
+            point_along(axes, branch, colour, SHORT_BRANCH * reach)
+            point_along(axes, branch.conj()[::-1], colour, SHORT_BRANCH * reach, size=MIRRORED_POINT)
+        marked = _mark_frequencies(axes, curve, colour, marked)
     set_round_ticks(axes, 5, 5)
     axes.set_xlabel("Real part")
     axes.set_ylabel("Imaginary part")
+
+
+def _branches(
+    axes: Axes, values: npt.NDArray[np.complex128], longest: float
+) -> Iterator[npt.NDArray[np.complex128]]:
+    """Yield the pieces of a curve that axes show, one after the other, long ones cut into equal lengths."""
+    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+    is_shown = (values.real > left) & (values.real < right) & (values.imag > low) & (values.imag < high)
+    for piece in np.split(np.arange(values.size), np.flatnonzero(np.diff(is_shown)) + 1):
+        if is_shown[piece[0]]:
+            lengths = np.cumsum(np.abs(np.diff(values[piece])))
+            count = 1 + int(lengths[-1] // longest) if lengths.size else 1
+            yield from (
+                np.split(values[piece], np.searchsorted(lengths, lengths[-1] * np.arange(1, count) / count))
+                if count > 1
+                else [values[piece]]
+            )
+
+
+def _mark_frequencies(axes: Axes, curve: AxisCurve, colour: str, marked: list[complex]) -> list[complex]:
+    """Write some round frequencies beside a curve, none beside another; return where all of them are."""
+    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+    # Both ends say little: there the frequency is next to 0, or far beyond what moves.
+    size, marked = (
+        complex(right - left, high - low),
+        [*marked, -1 + 0j, 0j, curve.values[0], curve.values[-1]],
+    )
+    decades = range(floor(log10(curve.frequency_hz[0])), ceil(log10(curve.frequency_hz[-1])) + 1)
+    count = 0
+    rounded = sorted((m not in (1, 2, 5), m * 10.0**d) for d in decades for m in range(1, 10))
+    for _, at in rounded:
+        if not curve.frequency_hz[0] < at < curve.frequency_hz[-1] or count == MOST_MARKS:
+            continue
+        s = complex(
+            *(np.interp(at, curve.frequency_hz, part) for part in (curve.values.real, curve.values.imag))
+        )
+        inside = left < s.real < right and low < s.imag < high
+        apart = min(hypot((s - z).real / size.real, (s - z).imag / size.imag) for z in marked)
+        if inside and apart > MARKS_APART:
+            axes.plot([s.real], [s.imag], ".", color=colour, markersize=4, zorder=3)
+            is_left = s.real < left + 0.75 * size.real
+            note = axes.annotate(
+                f"{at:g} Hz",
+                (s.real, s.imag),
+                (3 if is_left else -3, 2),
+                textcoords="offset points",
+                fontsize=6,
+            )
+            note.set(color=colour, ha="left" if is_left else "right", zorder=3)
+            note.set(bbox={"fc": "white", "ec": "none", "pad": 0.2, "alpha": 0.7})
+            marked.append(s)
+            count += 1
+    return marked
 
 
 def _open_poles(verdict: StabilityVerdict) -> str:
@@ -340,7 +420,7 @@ def _columns(labels: Sequence[str], width: float) -> int:
     return max(1, min(len(labels), 3, fitting))
 
 
-def _curve(bound: AnyBoundFunction, canvas: Canvas, *others: AnyBoundFunction) -> Curve:
+def _curve(bound: AnyBoundFunction, canvas: Canvas, *others: AnyBoundFunction) -> AxisCurve:
     """Return values along the axis, to where others have roots too, and what is known of its poles."""
     band, judged = canvas.band_of(bound.source.model), None
     if band is None:
@@ -353,11 +433,12 @@ def _curve(bound: AnyBoundFunction, canvas: Canvas, *others: AnyBoundFunction) -
         low *= AT_REST
     high /= AT_REST if canvas.band_hz is None and bound.is_rational else 1.0
     response = respond(bound, adaptive_grid(bound, low, high, roots=located), located)
-    values: npt.NDArray[np.complex128] = np.array(response.values, dtype=np.complex128)
-    return values[np.isfinite(values)], located.verdict
+    return AxisCurve.of(
+        response.frequency_hz, np.array(response.values, dtype=np.complex128), located.verdict
+    )
 
 
-def _network_curve(loop: NetworkLoop, gain: Fraction, canvas: Canvas) -> Curve:
+def _network_curve(loop: NetworkLoop, gain: Fraction, canvas: Canvas) -> AxisCurve:
     """Return the loop gain of a network along the axis, and what is known of the open loop's poles."""
     still = Fraction(0)
     low, high = canvas.band_of(loop.model) or default_band(closed_loop_roots(loop, still))
@@ -366,8 +447,8 @@ def _network_curve(loop: NetworkLoop, gain: Fraction, canvas: Canvas) -> Curve:
     def values(omega: npt.NDArray[np.float64]) -> npt.NDArray[np.complex128]:
         return np.array(loop.gains(gain, omega.tolist()), dtype=np.complex128)
 
-    curve = values(grid_about(located, values, low, high))
-    return curve[np.isfinite(curve)], located.verdict
+    omega = grid_about(located, values, low, high)
+    return AxisCurve.of(omega / (2 * np.pi), values(omega), located.verdict)
 
 
 def _reach(values: npt.NDArray[np.complex128], *, is_loop: bool) -> float:
@@ -378,7 +459,9 @@ def _reach(values: npt.NDArray[np.complex128], *, is_loop: bool) -> float:
     return 1.1 * min(largest, PEAKED * float(np.quantile(np.abs(values), 0.9))) or 1.0
 
 
-def point_along(axes: Axes, values: npt.NDArray[np.complex128], colour: str, least: float = 0.0) -> None:
+def point_along(
+    axes: Axes, values: npt.NDArray[np.complex128], colour: str, least: float = 0.0, size: float = 12
+) -> None:
     """Draw an arrow halfway along the part of a curve that is shown, if that is long enough."""
     (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
     half_width, half_height = (right - left) / 2, (high - low) / 2
@@ -393,5 +476,5 @@ def point_along(axes: Axes, values: npt.NDArray[np.complex128], colour: str, lea
     a, step = values[i], values[min(i + 1, values.size - 1)] - values[i]
     # Its head alone: the next value may be far outside.
     b = a + 0.01 * min(half_width, half_height) * step / abs(step)
-    look = {"arrowstyle": "-|>", "mutation_scale": 12, "linewidth": 0, "color": colour}
+    look = {"arrowstyle": "-|>", "mutation_scale": size, "linewidth": 0, "color": colour}
     axes.annotate("", (b.real, b.imag), (a.real, a.imag), arrowprops=look)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from itertools import pairwise
-from math import floor, log10
+from math import ceil, floor, log10
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -61,6 +61,8 @@ LEAST: Final = 1e-6  # numbers from here on are written out
 FINER, MOST_POINTS = 6, 8000
 """Points drawn for every one that no wave is missed by, which makes a hundred a half wave; and in all."""
 UNIT_NAMES: Final = {"m": "displacement", "rad": "angle", "V": "voltage", "": "signal"}
+PLAN: Final = "plan"
+SUPPORT: Final = 0.04  # size of a support over that of the frame
 LAGGING: Final = (0, (4, 1.5))
 Moving = tuple[Artist, Callable[[complex], object] | None]
 Curve = tuple["npt.NDArray[np.float64]", "npt.NDArray[np.complex128]"]
@@ -96,8 +98,8 @@ def draw_shapes(
     width = canvas.width or (COLUMN_INCHES if len(panels) <= PANELS_IN_COLUMN else PAGE_INCHES)
     titles = (title_lines(canvas.title, width), title_lines(said, width))
     lines = [line for group in titles for line in group]
-    per_metre = all(unit_of_reference(shape) == "m" for shape in shapes)
-    names = {**UNIT_NAMES, "rad": "angle [rad/m]"} if per_metre else UNIT_NAMES
+    is_per_metre = all(unit_of_reference(shape) == "m" for shape in shapes)
+    names = UNIT_NAMES | ({"rad": "angle [rad/m]"} if is_per_metre else {})
     labels = ["" if isinstance(panel, Plan) else names[_unit_of(panel)] for panel in panels]
     gaps = [LEFT, *(GAP if a == b else LABELLED_GAP for a, b in pairwise(labels))]
     columns = _widths(panels, width - RIGHT - sum(gaps))
@@ -106,28 +108,29 @@ def draw_shapes(
         message = f"{len(panels)} panels side by side do not fit into {MM_PER_INCH * width:.4g} mm"
         raise refused(message, "the width of a page is 170 mm")
     is_lagging = any(_lags(panel, shape) for shape in shapes for panel in panels)
-    has_axis = any(not isinstance(panel, Plan) for panel in panels)
     few = [(p, room) for p, room in zip(panels, columns, strict=True) if isinstance(p, Stems)]
-    names_below = max([0.0, *(_crowded(p, room) for p, room in few if len(p.names) <= NAMES_LIMIT)])
-    below = max(AXIS_INCHES, names_below + 0.08) if has_axis else RIGHT
+    crowded = (_crowded(p, room) + 0.08 for p, room in few if len(p.names) <= NAMES_LIMIT)
+    below = RIGHT if all(isinstance(panel, Plan) for panel in panels) else max(AXIS_INCHES, *crowded, 0.0)
     above = LINE_INCHES * len(lines) + (LEGEND_INCHES if is_lagging else 0) + 0.02
     row = PLAN_INCHES if any(isinstance(panel, Plan) for panel in panels) else ROW_INCHES
-    height = above + len(shapes) * (HEADING_INCHES + row) + below
+    # Shapes of frames alone stand side by side.
+    across = 2 if len(panels) == 1 and isinstance(panels[0], Plan) and len(shapes) > 1 else 1
+    height = above + ceil(len(shapes) / across) * (HEADING_INCHES + row) + below
     figure = root_figure(given_axes[0]) if given_axes else new_figure(width, height)
-    runs = sum(isinstance(panel, Run) for panel in panels)
     moving: list[Moving] = []
     for i, shape in enumerate(shapes):
-        bottom = height - above - (i + 1) * (HEADING_INCHES + row)
-        edge = 0.0
+        bottom = height - above - (i // across + 1) * (HEADING_INCHES + row)
+        edge = i % across * columns[0] / across
         for j, (panel, room, gap) in enumerate(zip(panels, columns, gaps, strict=True)):
             edge += gap
-            box = (edge / width, bottom / height, room / width, row / height)
+            box = (edge / width, bottom / height, room / across / width, row / height)
             axes = given_axes[i * len(panels) + j] if given_axes else figure.add_axes(box)
             if isinstance(panel, Plan):
                 parts = _draw_plan(axes, panel, shape)
             else:
                 parts = _draw_panel(axes, panel, shape)
-                _set_x_axis(axes, panel, room, is_last=i == len(shapes) - 1, is_named=runs > 1)
+                is_named = sum(isinstance(panel, Run) for panel in panels) > 1
+                _set_x_axis(axes, panel, room, is_last=i == len(shapes) - 1, is_named=is_named)
             still = isinstance(shape, EnclosedModeShape) and shape.pole.is_real
             moving += [(artist, _stays if still and move else move) for artist, move in parts]
             if j == 0:
@@ -135,6 +138,7 @@ def draw_shapes(
             if given_axes:
                 axes.set_ylabel(labels[j])
             edge += room
+    _share_scale([axes for axes in figure.axes if axes.get_gid() == PLAN])
     if given_axes:
         return figure
     _label_columns(figure, labels, columns, gaps, (below + (height - above - below) / 2) / height)
@@ -267,10 +271,37 @@ def _draw_plan(axes: Axes, panel: Plan, shape: EnclosedShape) -> list[Moving]:
     for node, x, y in panel.loaded:
         swings = [[complex(shape.motion(f"{node}.{c}").value.mid())] for c in ("x", "y")]
         moving.append(_draw_inertia(axes, x, y, np.array(swings) * complex(scale)))
+    for kind, x, y in panel.held:
+        _draw_support(axes, kind, (x, y), SUPPORT * size)
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.03)  # beyond the moved members, which count for the limits
     axes.set_axis_off()
+    axes.set_gid(PLAN)
     return moving
+
+
+def _draw_support(axes: Axes, kind: str, at: tuple[float, float], size: float) -> None:
+    """Draw how an end is held: hatched ground, below a triangle for a pin, below a roller for a slider."""
+    x, y = at
+    style: dict[str, Any] = {"color": QUIET, "linewidth": 0.6, "zorder": 1}
+    drop = 0.0 if kind == "fixed" else size
+    if kind == "pin":
+        axes.plot([x, x - 0.6 * size, x + 0.6 * size, x], [y, y - size, y - size, y], **style)
+    elif kind == "slider":
+        turn = np.linspace(0, 2 * np.pi, 25)
+        axes.plot(x + size / 2 * np.cos(turn), y - size / 2 + size / 2 * np.sin(turn), **style)
+    axes.plot([x - size, x + size], [y - drop, y - drop], **style)
+    for start in np.linspace(-size, 0.6 * size, 5):
+        axes.plot([x + start + 0.4 * size, x + start], [y - drop, y - drop - 0.4 * size], **style)
+
+
+def _share_scale(panels: Sequence[Axes]) -> None:
+    """Give shapes in the plane the same limits, so that they have one scale."""
+    for part, put in (("get_xlim", "set_xlim"), ("get_ylim", "set_ylim")):
+        ends = [getattr(axes, part)() for axes in panels]
+        for axes in panels:
+            axes.set_aspect("equal", adjustable="box")
+            getattr(axes, put)(min(low for low, _ in ends), max(high for _, high in ends))
 
 
 def _draw_panel(axes: Axes, panel: Panel, shape: EnclosedShape) -> list[Moving]:

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from symflex.figures.axes import Canvas
-from symflex.figures.loops import draw_curves, point_along
+from symflex.figures.loops import AxisCurve, draw_curves, point_along
 from symflex.figures.style import COLOURS, QUIET
 from symflex.loops import AnyLoop
 from symflex.transfer import AnyBoundFunction
@@ -35,9 +35,9 @@ def draw_loop_phase(loop: AnyLoop, canvas: Canvas) -> Figure:
 
 
 def _draw_chart(
-    axes: Axes, curves: list[npt.NDArray[np.complex128]], labels: list[str], canvas: Canvas, is_loop: bool
+    axes: Axes, curves: list[AxisCurve], labels: list[str], canvas: Canvas, is_loop: bool
 ) -> None:
-    charts = [_phases_and_levels(curve) for curve in curves]
+    charts = [_phases_and_levels(curve.values) for curve in curves]
     shown = np.concatenate(charts)
     phases = shown.real[np.abs(shown.imag) <= REACH_DB]
     high = 90 * ceil(float(phases.max(initial=-90) + BESIDE) / 90)

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 Vector = tuple[float, float]
 AT_REST: Final = 1e-9
+SUPPORTS: Final = ("fixed", "pin", "slider")
 APART: Final = 0.3  # space between members that no node joins, as a share of the length of one
 
 
@@ -53,6 +54,9 @@ class Plan:
 
     members: tuple[tuple[str, float, float], ...]  # names, and where their first ends are
     loaded: tuple[tuple[str, float, float], ...]  # nodes that carry inertia
+    held: tuple[
+        tuple[str, float, float], ...
+    ] = ()  # how ends are held, ``fixed``, ``pin`` or ``slider``, and where
 
 
 Panel = Run | Plan | Stems
@@ -131,7 +135,21 @@ def _plan(model: Model, parts: dict[str, DistributedShape]) -> Iterator[Plan]:
         carrying = _carrying(model)
         at = {node: point for n, both in nodes.items() for node, point in zip(both, ends[n], strict=True)}
         loaded = tuple((node, *point) for node, point in at.items() if node in carrying)
-        yield Plan(tuple((name, *start) for name, (start, _) in ends.items()), loaded)
+        places = [
+            (node, point) for n, both in nodes.items() for node, point in zip(both, ends[n], strict=True)
+        ]
+        support = _supports(model)
+        held = tuple(dict.fromkeys((support[node], *point) for node, point in places if node in support))
+        yield Plan(tuple((name, *start) for name, (start, _) in ends.items()), loaded, held)
+
+
+def _supports(model: Model) -> dict[str, str]:
+    """Return how nodes are held: ``fixed`` (ground, too), ``pin`` or ``slider``."""
+    found = {"ground": "fixed"}
+    for use in model.elements:
+        if use.element.type_name in SUPPORTS:
+            found |= {reference.node: use.element.type_name for _, at in use.nodes for reference in at}
+    return found
 
 
 def places_of_members(members: Mapping[str, tuple[str, str, Vector]]) -> dict[str, tuple[Vector, Vector]]:

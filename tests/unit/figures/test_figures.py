@@ -353,6 +353,15 @@ def test_a_nyquist_plot_of_a_band_ends_with_it():
     assert (curve.get_xdata()[-1], curve.get_ydata()[-1]) == pytest.approx((0.5, -0.5))
 
 
+def test_frequencies_stand_beside_a_nyquist_plot_where_its_values_are():
+    (axes,) = drawn_rational("nyquist", "1/(s + 1)").axes
+    marks = {note.get_text(): complex(*note.xy) for note in axes.texts if note.get_text().endswith("Hz")}
+    assert len(marks) > 2
+    for text, at in marks.items():
+        # The curve is drawn between points that are closer than a line is wide.
+        assert at == pytest.approx(1 / (1 + 2j * np.pi * float(text.removesuffix(" Hz"))), abs=2e-3)
+
+
 def test_without_a_band_all_poles_and_zeros_are_shown():
     low, high = drawn_rational("bode", "1/((s + 1)*(s + 50))").axes[0].get_xlim()
     assert (2 * np.pi * low, 2 * np.pi * high) == pytest.approx((0.1, 500))

@@ -43,6 +43,21 @@ def test_there_is_a_row_per_mode_with_its_frequency_and_damping():
     assert titles == [r"$11.00$ Hz, $\zeta = 0.0149$", r"$38.01$ Hz, $\zeta = 0.0149$"]
 
 
+def test_shapes_of_a_frame_stand_two_in_a_row_in_one_scale_and_above_its_supports():
+    figure = drawn(pipeline.load(ROOT / "derivations" / "frames" / "pin_ended_cross.toml"), modes=3)
+    places = [axes.get_position(original=True) for axes in figure.axes]
+    assert places[0].y0 == places[1].y0 > places[2].y0 and places[0].x0 == places[2].x0 < places[1].x0
+    assert len({(axes.get_xlim(), axes.get_ylim()) for axes in figure.axes}) == 1
+    # Each end is pinned: a triangle of four points with its corner at the end, 5 m from the middle.
+    corners = {
+        tuple(np.round(line.get_xydata()[0], 6))
+        for line in figure.axes[0].lines
+        if len(line.get_xdata()) == 4
+    }
+    assert len(corners) == 4
+    assert np.ptp([x for x, _ in corners]) == np.ptp([y for _, y in corners]) == pytest.approx(10)
+
+
 @pytest.mark.slow
 def test_hidden_modes_are_drawn_in_their_place_and_as_many_as_the_analysis_says():
     model = pipeline.load(CLASSICS / "clamped_clamped.toml")
