@@ -22,6 +22,7 @@ from pathlib import Path
 
 from flint import acb
 
+from symflex.analysis.sampled_loop import SampledPoles, sampled_loop, sampled_poles, sampled_stability
 from symflex.balls import ball
 from symflex.contact.hybrid import HybridPassivity, find_hybrid
 from symflex.contact.joined import joined
@@ -78,7 +79,15 @@ SIZES = {
 }
 """Powers of the size at a frequency, and of this, that parameters of elements have."""
 Range = tuple[Fraction, Fraction | None]  # the ends of what a letter may be, in SI units; None without one
-Answer = StabilityMap | StabilityChart | SpreadStability | PoleZeroMap | PortPassivity | HybridPassivity
+Answer = (
+    StabilityMap
+    | StabilityChart
+    | SpreadStability
+    | PoleZeroMap
+    | SampledPoles
+    | PortPassivity
+    | HybridPassivity
+)
 
 
 @dataclass(frozen=True)
@@ -113,6 +122,8 @@ class CoupledStability(Printed):
         """The answer in a few words."""
         if isinstance(self.answer, PoleZeroMap):
             return self.answer.verdict.headline
+        if isinstance(self.answer, SampledPoles):
+            return self.answer.sentence
         if self.is_stable is None:
             return "not decided"
         scope = "with all of them" if self.environment.text == ANY else "for all values"
@@ -121,7 +132,7 @@ class CoupledStability(Printed):
     @property
     def certified(self) -> bool:
         """Whether what was asked for is decided and proved."""
-        if isinstance(self.answer, PoleZeroMap):
+        if isinstance(self.answer, PoleZeroMap | SampledPoles):
             return self.answer.verdict.word != "unknown"
         return (
             self.is_stable is not None
@@ -205,16 +216,16 @@ def coupled_stability(
     if lost := [p.name for p in free if p.name not in names]:
         hint = f"give it one: --set {lost[0]}=VALUE, or ask for it: --over {lost[0]}"
         raise refused(f"'{lost[0]}' of the environment has no value", hint)
-    if spare := [name for name, *_ in given.ranges if name not in names]:
-        raise refused(f"a range of '{spare[0][:64]}', which is not asked for", f"--over {spare[0][:64]} asks")
+    _check_ranges(given, names)
     if not names:
-        if given.limits or given.up_to is not None:
-            raise refused("no letter of the environment is without a value, and so none has a range")
         return CoupledStability(environment, _located(model))
     if len(names) > 2:  # noqa: PLR2004 (a chart has two axes)
         raise refused(f"{len(names)} letters have no value: at most two", "give others one: --set NAME=VALUE")
     ranges = {p.name: _range(p, given, len(names)) for p in free}
     endless = [name for name, (_, high) in ranges.items() if high is None]
+    if endless and model.sampled is not None:
+        message = f"the values of '{endless[0]}' need an end, as poles of a sampled loop are followed so far"
+        raise UsageError(Diagnostic("SF804", message, None, f"give one: --range {endless[0]} 0 HI"))
     if not endless or (given.over and len(names) > 1):
         return CoupledStability(environment, _answer(model, given, names, ranges))
     if len(names) == 1:
@@ -242,6 +253,14 @@ def coupled_stability(
     raise UsageError(Diagnostic("SF804", message, None, f"give ranges: {ranged}"))
 
 
+def _check_ranges(given: ContactOptions, names: Sequence[str]) -> None:
+    """Refuse ranges of what is not asked for."""
+    if spare := [name for name, *_ in given.ranges if name not in names]:
+        raise refused(f"a range of '{spare[0][:64]}', which is not asked for", f"--over {spare[0][:64]} asks")
+    if not names and (given.limits or given.up_to is not None):
+        raise refused("no letter of the environment is without a value, and so none has a range")
+
+
 def _beside(
     machine: Model,
     port: ContactPort,
@@ -252,11 +271,10 @@ def _beside(
 ) -> CoupledStability:
     """Return what holds of a machine that touches another one at its port of a name.
 
-    ModelError: SF261 where the controller of either takes samples.
+    ModelError: SF261 where the controller of the other one takes samples.
     """
-    for each in (machine, other):
-        if each.sampled is not None:
-            raise sampled_refused(each)
+    if other.sampled is not None:
+        raise sampled_refused(other)
     model = with_values(joined(machine, port, other, port_named(other, name)), values)
     parts = tuple((each.element.type_name, "", each.name) for each in other.elements)
     answer = _answer(model, given, given.over, {}) if given.over else _located(model)
@@ -300,7 +318,8 @@ def _answer(model: Model, given: ContactOptions, names: Sequence[str], ranges: M
         of_letters = tuple((n, low, inf if high is None else high) for n, (low, high) in ranges.items())
         others = tuple(each for each in given.ranges if each[0] not in ranges)
         limits = None if of_letters else given.limits
-        return stability_over(
+        search = stability_over if model.sampled is None else sampled_stability
+        return search(
             model,
             StabilityOptions(
                 "", limits, None, given.digits, tuple(names), (*of_letters, *others), given.resolve
@@ -308,6 +327,9 @@ def _answer(model: Model, given: ContactOptions, names: Sequence[str], ranges: M
         )
     box = tuple((low, high) for low, high in (ranges[name] for name in names) if high is not None)
     parameters = [next(p for p in model.parameters if p.name == name) for name in names]
+    if model.sampled is not None:
+        loop = sampled_loop(model, dict(zip(names, box, strict=True)))
+        return find_spread(loop.characteristic(names), box, parameters)
     return find_spread(characteristic(model, names, box), box, parameters)
 
 
@@ -352,8 +374,10 @@ def _scale(environment: Environment, letter: str, size: tuple[float, float]) -> 
     return Fraction(10) ** round(of_size * log10(size[0]) + of_omega * log10(size[1]))
 
 
-def _located(model: Model) -> PoleZeroMap:
+def _located(model: Model) -> PoleZeroMap | SampledPoles:
     """Return the poles of a model whose parameters have values, of a distributed one the lowest."""
+    if model.sampled is not None:
+        return sampled_poles(model)
     pair = seen_pair(model)
     (bound,) = derive_for_roots(observed(model, pair[0]), [pair])
     return locate(bound, None if bound.is_rational else Modes(MODES), with_zeros=False)

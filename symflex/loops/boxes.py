@@ -111,7 +111,7 @@ class CharacteristicFunction:
 
     def _moved(self, tf: TransferFunction) -> tuple[fmpz_mpoly, ...]:
         hidden = [h.polynomial for h in tf.hidden]
-        moving = {name: _moving(tf, name) for name in self.names}
+        moving = {name: self.moved_by(tf, name) for name in self.names}
         moved = []
         for f in factors_of(tf, with_images=not self.is_alone):
             moved_by = tuple(name for name, places in moving.items() if any(f.degrees()[i] for i in places))
@@ -161,7 +161,17 @@ class CharacteristicFunction:
     def depends_on(self, name: str) -> bool:
         """Tell whether a root depends on a parameter."""
         every = factors_of(self.tf, with_images=not self.is_alone)
-        return any(f.degrees()[i] for f in every for i in _moving(self.tf, name))
+        return any(f.degrees()[i] for f in every for i in self.moved_by(self.tf, name))
+
+    def moved_by(self, tf: TransferFunction, name: str) -> set[int]:
+        """Return the places in the ring of what depends on a parameter, wavenumbers and kernels among it."""
+        ring, table = tf.ratio.ring, tf.kernels
+        moved = (c.generator for c in tf.constants if names_among(c.expression, {name}))
+        moving = {name, *moved} & set(ring.index)
+        laws = [d for d in table.dispersions if any(v.depends_on(n) for v in d.coefficients for n in moving)]
+        waves = {w for d in laws for w in d.wavenumbers}
+        kernels = (k for k in table.kernels if k.dispersion in laws or any(map(k.length.depends_on, moving)))
+        return {ring.index[n] for n in (*moving, *waves, *(k.generator for k in kernels))}
 
     def whole(self, box: Box) -> OpenBox:
         """Return a box about which nothing is known yet."""
@@ -282,7 +292,7 @@ class CharacteristicFunction:
 
     def bound_in(self, tf: TransferFunction, box: Box) -> BoundTransferFunction:
         """Return a transfer function whose parameters lie anywhere in a box."""
-        fixed = tuple((name, _enclosed(ends)) for name, ends in zip(self.names, box, strict=True))
+        fixed = tuple((name, enclosed(ends)) for name, ends in zip(self.names, box, strict=True))
         fixed += tf.fixed
         return BoundTransferFunction(tf, self.values, tf.ratio, tf.hidden, tf.kernels, fixed=fixed)
 
@@ -468,17 +478,6 @@ def _fraction(x: arb) -> Fraction:
     return int(mantissa) * Fraction(2) ** int(exponent)
 
 
-def _moving(tf: TransferFunction, name: str) -> set[int]:
-    """Return the places in the ring of what depends on a parameter, wavenumbers and kernels among it."""
-    ring, table = tf.ratio.ring, tf.kernels
-    moved = (c.generator for c in tf.constants if names_among(c.expression, {name}))
-    moving = {name, *moved} & set(ring.index)
-    laws = [d for d in table.dispersions if any(v.depends_on(n) for v in d.coefficients for n in moving)]
-    waves = {w for d in laws for w in d.wavenumbers}
-    kernels = (k for k in table.kernels if k.dispersion in laws or any(map(k.length.depends_on, moving)))
-    return {ring.index[n] for n in (*moving, *waves, *(k.generator for k in kernels))}
-
-
 def factors_of(
     tf: TransferFunction, given: Sequence[fmpz_mpoly] | None = None, *, with_images: bool = True
 ) -> tuple[fmpz_mpoly, ...]:
@@ -497,7 +496,7 @@ def factors_of(
     return tuple(f for f in every if len(f) > 1 or not any(f.degrees()[i] for i in alone))
 
 
-def _enclosed(ends: Ends) -> Callable[[], arb]:
+def enclosed(ends: Ends) -> Callable[[], arb]:
     """Return a ball about the values between two ends, none of which is negative unless an end is."""
     low, high = ends
 

@@ -18,9 +18,10 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, partial
 
-from flint import arb, fmpz_mpoly
+from flint import acb, acb_series, arb, fmpz_mpoly
 
 from symflex.algebra import LAPLACE, NO_KERNELS, Factored, Ring, degree_in
+from symflex.analysis.sampled_loop.plant import PlantPulse
 from symflex.analysis.sampled_loop.pulse import pulse_function
 from symflex.analysis.sampled_loop.symbolic import BACK, Ends, Fixed, Timing, pulse_of, pulse_over
 from symflex.analysis.time_response.delayed_terms import delayed_quotient
@@ -39,8 +40,9 @@ from symflex.expressions import (
 )
 from symflex.library.blocks import BLOCKS
 from symflex.loops.apart import NONE, PolesApart, poles_apart
-from symflex.loops.boxes import BITS, Box, CharacteristicFunction, Piece
+from symflex.loops.boxes import AXIS, BITS, Box, CharacteristicFunction, OpenBox, Path, Piece
 from symflex.loops.loop import GainPolynomial
+from symflex.loops.over import with_values
 from symflex.model import ExactValue, Input, Model, ModelParameter, Output, PlacedBlock, with_numbers
 from symflex.model.model import Z
 from symflex.model.sampled import OpenedLoop, SampledChannel, opened
@@ -53,9 +55,12 @@ from symflex.roots.root import Root
 from symflex.state_space.sampled import Sampling
 from symflex.transfer import BoundTransferFunction, TransferFunction, bind
 from symflex.transfer.enclose import enclose, rational_value
+from symflex.transfer.enclose_kernels import KernelValues
 from symflex.transfer.of_model import derive_all
 
 COUNT_DIGITS = 15
+NO_PERIOD = "next to a period of 0 there is no end of frequencies"
+EACH = "ask at each value: --set NAME=VALUE"
 CLOSED, DRIVEN = "sampled loop", "reference"  # the function whose poles are those of the loop
 
 
@@ -69,13 +74,14 @@ class SampledLoop:
     delay: Fraction  # from a sample to the output that follows from it [s]
     tf: TransferFunction  # whose denominator is the characteristic function
     hidden: tuple[BoundTransferFunction, ...] = ()  # of the continuous part, with modes no controller sees
+    plant: PlantPulse | None = None  # of a continuous part some of whose parameters are symbols
 
     def characteristic(self, names: Sequence[str]) -> SampledCharacteristic:
         """Return the function whose roots are followed around the unit circle."""
         values = tuple((p.name, p.value) for p in self.tf.model.parameters if p.value and p.name not in names)
         known = {p.name: p.value for p in self.model.parameters if p.value and p.name not in names}
         period = substitute(self.opened.period, {n: exact_expression(x) for n, x in known.items()})
-        return SampledCharacteristic(self.tf, tuple(names), values, is_modal=False, period=period)
+        return SampledCharacteristic(self.tf, tuple(names), values, is_modal=False, period=period, loop=self)
 
     @cached_property
     def apart(self) -> StabilityVerdict:
@@ -121,10 +127,51 @@ class SampledCharacteristic(CharacteristicFunction):
     """A characteristic function in ``exp(-s T)``: half of the unit circle is the axis up to ``pi/T``."""
 
     period: Expression = field(kw_only=True)  # [s]
+    loop: SampledLoop = field(kw_only=True)
+
+    def moved_by(self, tf: TransferFunction, name: str) -> set[int]:
+        """Return the places in the ring of what depends on a parameter, also by the continuous part."""
+        plant, index = self.loop.plant, tf.ratio.ring.index
+        is_there = plant is not None and name in plant.machine.names
+        names = plant.names if plant is not None and is_there else ()
+        return super().moved_by(tf, name) | {index[n] for n in names if n in index}
+
+    def bound_in(self, tf: TransferFunction, box: Box) -> BoundTransferFunction:
+        """Return the function for parameters in a box, with the coefficients of the continuous part there."""
+        bound = super().bound_in(tf, box)
+        if self.loop.plant is None:
+            return bound
+        return replace(bound, fixed=(*bound.fixed, *self.loop.plant.fixed(self._of_plant(box))))
+
+    def kernels(self, tf: TransferFunction, box: Box, along: str = "") -> KernelValues:
+        """Return the evaluator for a box, to first order in one parameter of either part."""
+        kernels = super().kernels(tf, box, along)
+        plant = self.loop.plant
+        if plant is None or along not in plant.machine.names:
+            return kernels
+        pairs = plant.named(self._of_plant(box), along)
+        series = {n: acb_series([acb(x), acb(y)], 2) for n, (x, y) in pairs.items()}
+        return replace(kernels, constants={**kernels.constants, **series})
+
+    def _of_plant(self, box: Box) -> Box:
+        """Return the ends of the parameters that the continuous part has."""
+        names = () if self.loop.plant is None else self.loop.plant.machine.names
+        return tuple(box[self.names.index(name)] for name in names)
 
     def _end(self, box: Box) -> float | str:
         """Return half of the sampling frequency, the largest in a box [rad/s], and a little more."""
-        return float(self._half(box).upper()) * (1 + 2.0**-50)  # a pole that passes z = -1 does so there
+        half = self._half(box)
+        if not half.is_finite():
+            return NO_PERIOD
+        return float(half.upper()) * (1 + 2.0**-50)  # a pole that passes z = -1 does so there
+
+    def narrowed(self, box: OpenBox, bits: int = BITS, path: Path = AXIS) -> OpenBox:
+        """Return the box with the open pieces of the axis up to half of the sampling frequency."""
+        end = self._end(box.box)
+        if isinstance(end, str):
+            return super().narrowed(box, bits, path)
+        pieces = tuple(tuple(piece for piece in each if piece[0] <= end) for each in box.pieces)
+        return super().narrowed(replace(box, pieces=pieces), bits, path)
 
     def _half(self, box: Box) -> arb:
         """Return half of the sampling frequency [rad/s], for all values in a box."""
@@ -138,6 +185,9 @@ class SampledCharacteristic(CharacteristicFunction):
 
     def located(self, point: Sequence[Fraction | ExactValue], modes: int = 1) -> PoleZeroMap:
         """Return the poles in the w plane at one point."""
+        if self.loop.plant is not None:
+            at = dict(zip(self.names, point, strict=True))
+            return located_in_w(sampled_loop(with_values(self.loop.model, at)).tf, {})
         return located_in_w(self.tf, dict(zip(self.names, point, strict=True)))
 
 
@@ -174,7 +224,7 @@ def _turned(ring: Ring, small: Ring, factor: fmpz_mpoly, back: int) -> fmpz_mpol
 
 
 def sampled_loop(model: Model, ranges: Mapping[str, Ends] | None = None) -> SampledLoop:
-    """Return the loop of a model with ``[sampled]``, parameters of its controllers with a range left symbols.
+    """Return the loop of a model with ``[sampled]``, parameters with a range left symbols.
 
     ModelError: SF229 where a parameter has no value; SF235, SF236, SF260, SF801 where the loop is none.
     """
@@ -190,15 +240,29 @@ def sampled_loop(model: Model, ranges: Mapping[str, Ends] | None = None) -> Samp
         raise ModelError(Diagnostic("SF260", message, loop.period.span))
     (channel,) = loop.channels
     _check_causal(model, channel, delay / period, symbolic)
-    (tf,) = derive_all(observed(with_numbers(loop.model), channel.seen), [(channel.seen, channel.held)])
-    bound = bind(tf.whole)
+    of_plant = [name for name in symbolic if any(names_among(e, {name}) for _, e in loop.model.expressions())]
+    machine = observed(with_numbers(loop.model, of_plant), channel.seen)
+    (tf,) = derive_all(machine, [(channel.seen, channel.held)])
+    if tf.ratio.is_zero:
+        message = "what the sampled block sees does not move with what it holds, so that it closes no loop"
+        raise ModelError(Diagnostic("SF260", message, loop.period.span, "leave out [sampled]"))
+    bound = bind(tf.whole, {name: sum(symbolic[name]) / 2 for name in of_plant})
     delays = None if bound.is_rational else delayed_quotient(bound)
     if not bound.is_rational and (delays is None or len(delays.below) > 1):
         message = "a sampled loop about beams, or about a delay in a continuous loop, is not available yet"
         hint = "give the machine a few modes in place of beams, as 'symflex rational' prints them"
         raise ModelError(Diagnostic("SF235", message, model.outputs[0].span, hint))
-    if any(names_among(e, symbolic) for e in (loop.period, loop.delay)):
-        pulse = pulse_over(bound, Timing(loop.period, loop.delay, numbers, symbolic))
+    timing = Timing(loop.period, loop.delay, numbers, symbolic)
+    of_times = [name for name in symbolic if any(names_among(e, {name}) for e in (loop.period, loop.delay))]
+    if of_plant or (of_times and bound.is_rational):
+        _check_followed(model, tf.whole, of_plant)
+        function = CharacteristicFunction.of(machine, tf.whole, list(dict.fromkeys((*of_plant, *of_times))))
+        is_whole = not delay or (not of_times and not delay % period)
+        plant = PlantPulse(function, loop.period, loop.delay, timing.samples(Fraction(0)), is_whole, numbers)
+        closed = _closed(model, channel, loop.period, (plant.expression, ()), symbolic, plant.names)
+        return SampledLoop(model, loop, period, delay, closed, (bound,), plant)
+    if of_times:
+        pulse = pulse_over(bound, timing)
     else:
         pulse = pulse_of(pulse_function(bound, Sampling(period), delay))
     tf = _closed(model, channel, loop.period, pulse, symbolic)
@@ -249,15 +313,25 @@ def _no_time(message: str, expression: Expression) -> ModelError:
 
 
 def _check_symbol(model: Model, loop: OpenedLoop, name: str) -> None:
-    """Refuse a parameter that is not one of controllers alone."""
+    """Refuse a parameter on which no pole depends."""
     parameter = next(p for p in model.parameters if p.name == name)
-    if any(names_among(e, {name}) for _, e in loop.model.expressions()):
-        message = f"'{name}' is a parameter of the continuous part of a sampled loop"
-        hint = "ask for parameters of the sampled block; for others, ask at each value: --set NAME=VALUE"
-        raise ModelError(Diagnostic("SF801", message, parameter.span, hint))
-    used = (*(c.controller for c in loop.channels), loop.period, loop.delay)
-    if not any(names_among(e, {name}) for e in used):
+    times, controllers = (loop.period, loop.delay), [c.controller for c in loop.channels]
+    is_of_plant = any(names_among(e, {name}) for _, e in loop.model.expressions())
+    if not is_of_plant and not any(names_among(e, {name}) for e in (*times, *controllers)):
         raise ModelError(Diagnostic("SF801", f"no pole of the model depends on '{name}'", parameter.span))
+
+
+def _check_followed(model: Model, tf: TransferFunction, names: Sequence[str]) -> None:
+    """Refuse parameters of a continuous part with delays, and those that move modes it hides; SF801."""
+    for name in names:
+        span = next(p.span for p in model.parameters if p.name == name)
+        if tf.kernels:
+            message = f"'{name}' is a parameter of a continuous part with delays"
+            raise ModelError(Diagnostic("SF801", message, span, EACH))
+        place = tf.ratio.ring.index.get(name)
+        if place is not None and any(h.polynomial.degrees()[place] for h in tf.hidden):
+            message = f"'{name}' moves modes that the sampled block does not see or move"
+            raise ModelError(Diagnostic("SF801", message, span, EACH))
 
 
 def _closed(
@@ -266,14 +340,15 @@ def _closed(
     period: Expression,
     pulse: tuple[Expression, Fixed],
     symbolic: Collection[str],
+    names: Collection[str] = (),
 ) -> TransferFunction:
-    """Return one over ``1 - C P`` as a function of ``exp(-s T)``."""
+    """Return one over ``1 - C P`` as a function of ``exp(-s T)``; ``names`` are of numbers known later."""
     seen, fixed = pulse
     controller = substitute(channel.controller, {Z: Quotient(number(1), Name(BACK))})
     loop_gain = Product((controller, seen))
     shown = Quotient(Name(DRIVEN), Sum((number(1), Negative(loop_gain))))
     kept = tuple(p for p in model.parameters if p.name in symbolic or p.value is not None)
-    constants = tuple(ModelParameter(name, None, "", "real") for name, _ in fixed)
+    constants = tuple(ModelParameter(name, None, "", "real") for name in (*dict(fixed), *names))
     closed = Model(
         parameters=(*kept, *constants),
         blocks=(PlacedBlock(BACK, BLOCKS["delay"], (("T", period),)),),

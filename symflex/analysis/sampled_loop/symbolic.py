@@ -107,7 +107,7 @@ def pulse_of(pulse: Pulse) -> tuple[Expression, Fixed]:
         return sum_of(terms)
 
     above, below = side("above", 0), side("below", 1)
-    return Quotient(above, product_of([_ahead(found.at_one), below])), tuple(constants.known)
+    return Quotient(above, product_of([power_of_ahead(found.at_one), below])), tuple(constants.known)
 
 
 def _coefficient(pulse: Pulse, which: str, j: int) -> arb:
@@ -115,7 +115,8 @@ def _coefficient(pulse: Pulse, which: str, j: int) -> arb:
     return side[j] if j < len(side) else arb(0)
 
 
-def _ahead(exponent: int) -> Expression:
+def power_of_ahead(exponent: int) -> Expression:
+    """Return a power of ``1 - b``."""
     return power(Sum((number(1), Negative(B))), number(exponent))
 
 
@@ -180,9 +181,9 @@ class _Mode:
             )
             above = product_of([begun, shifted, power(period, number(i)), eulerian])
             ahead_of = Sum((number(1), Negative(x)))
-            below = _ahead(i) if rate is None else power(ahead_of, number(i + 1))
+            below = power_of_ahead(i) if rate is None else power(ahead_of, number(i + 1))
             term: Expression = Quotient(above, product_of([number(factorial(i)), below]))
-            terms.append(term if rate is None else product_of([_ahead(1), term]))
+            terms.append(term if rate is None else product_of([power_of_ahead(1), term]))
         return sum_of(terms)
 
     def _pair(self, period: Expression, ahead: Expression) -> Expression:
@@ -203,7 +204,7 @@ class _Mode:
         above = Sum((u, negative(product_of([crossed, B]))))
         middle = product_of([number(2), grown, cos_t, B])
         below = Sum((number(1), negative(middle), product_of([power(grown, number(2)), power(B, number(2))])))
-        return Quotient(product_of([_ahead(1), above]), below)
+        return Quotient(product_of([power_of_ahead(1), above]), below)
 
 
 def _real_part(j: int, rate: acb, coefficients: Sequence[acb]) -> arb:

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from symflex import Model, loads
-from symflex.errors import SpecError, SymflexError, UsageError
+from symflex.errors import ModelError, SpecError, SymflexError, UsageError
+from tests.unit.analysis.sampled_loop.test_plant import HANDLE, edge, size
 
 POLYNOMIAL = np.polynomial.polynomial
 
@@ -194,3 +195,25 @@ def test_a_tool_whose_controller_takes_samples_is_refused(tmp_path):
     tool.write_text(SAMPLED_TOOL)
     with pytest.raises(SymflexError, match="SF261"):
         loads(FORCE_LOOP).contact("x_touch", f"{tool}:q", z_e=0.5)
+
+
+def test_a_spring_at_a_sampled_handle_is_part_of_what_is_sampled():
+    # The handle of tests/unit/analysis/sampled_loop/test_plant.py with its spring as the environment.
+    text = "\n".join(line for line in HANDLE.splitlines() if not line.startswith("tool"))
+    text = text.replace('k = "1 kN/m", ', "")
+    found = loads(text).contact("x", "k_e", ranges={"k_e": (1e5, 3e5)})
+    assert found.is_stable is False
+    assert float(found.answer.boundaries[0].gain) == pytest.approx(edge("k", 1e5, 3e5), rel=1e-8)
+
+
+def test_values_at_a_sampled_handle_give_its_poles_in_z():
+    found = loads(HANDLE).contact("x", "0.01*s")
+    assert found.is_stable
+    assert float(found.answer.poles[-1].size.mid()) == pytest.approx(size(b=0.71), rel=1e-12)
+
+
+def test_a_sampled_handle_needs_ends_of_ranges_and_something_that_moves():
+    with pytest.raises(UsageError, match="SF804"):
+        loads(HANDLE).contact("x", "spring")
+    with pytest.raises(ModelError, match="closes no loop"):
+        loads(HANDLE).contact("x", "wall")

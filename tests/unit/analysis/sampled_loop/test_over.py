@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from symflex import loads
-from symflex.errors import ModelError
 from tests.unit.analysis.sampled_loop.exact_steps import closed_poles
 
 WALL = """symflex = 1
@@ -101,9 +100,3 @@ def test_what_is_said_is_said_of_the_circle():
     found = loads(WALL).stability(over="K", limits=(0, 3000))
     assert "all poles outside the unit circle counted" in str(found)
     assert found.to_json_dict()["sampled"] == "wall: sampled every 0.001 s, the output held"
-
-
-def test_a_parameter_of_the_machine_is_refused():
-    with pytest.raises(ModelError) as caught:
-        loads(WALL).stability(over="m")
-    assert caught.value.diagnostics[0].code == "SF801"

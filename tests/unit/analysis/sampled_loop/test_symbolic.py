@@ -1,4 +1,4 @@
-"""Pulse functions with the period as a letter: the same values as with numbers."""
+"""Pulse functions of delayed machines with the period as a symbol: the same values as with numbers."""
 
 from fractions import Fraction
 
@@ -21,7 +21,7 @@ PLANTS = (
 def loop(plant, delay="0", ranges=None):
     text = f"""symflex = 1
 parameters = {{ K = 3, T = "0.1 s" }}
-blocks     = {{ G = "{plant}", C = "K*(1 - 0.5/z)" }}
+blocks     = {{ G = "exp(-0.013*s)*({plant})", C = "K*(1 - 0.5/z)" }}
 sampled    = {{ period = "T", delay = "{delay}", blocks = ["C"] }}
 signals    = {{ y = "G*(u - C*y)" }}
 inputs     = {{ u = {{}} }}
@@ -31,7 +31,7 @@ outputs    = {{ Y = "y" }}
 
 
 @pytest.mark.parametrize("plant", PLANTS)
-@pytest.mark.parametrize("delay", ["0", "0.3*T", "T", "0.02 s"])
+@pytest.mark.parametrize("delay", ["0", "0.3*T"])
 def test_the_characteristic_function_is_the_same_in_symbols(plant, delay):
     s = 0.7 + 3j
     numbers = bind(loop(plant, delay).tf)(s)
