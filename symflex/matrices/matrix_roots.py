@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from flint import acb
 
 from symflex.balls import opposite, precision
-from symflex.matrices.system_matrix import SystemMatrix, null_vectors
+from symflex.matrices.system_matrix import SystemMatrix, null_vector
 from symflex.print.roots import SHORT_DIGITS, one_of_each_pair, roots_text
 from symflex.print.text import INDENT, WIDTH, aligned, broken
 from symflex.roots import PoleZeroMap, Root
@@ -146,8 +146,8 @@ def _vectors(matrix: SystemMatrix, rank: int, zero: Root) -> list[tuple[acb, ...
                 columns[j][i] = x
         found = []
         for sides, count in ((rows, matrix.inputs), (columns, len(matrix.lower))):
-            vectors = (null_vectors(sides, 1) if rank == count else None) or [[]]
-            entries = vectors[0][len(matrix.upper) :]
+            vector = null_vector(sides) if rank == count else None
+            entries = (vector or [])[len(matrix.upper) :]
             largest = max(entries, key=lambda x: float(abs(x).mid()), default=acb(0))
             is_known = not largest.contains(0)
             found.append(tuple(acb(1) if x is largest else x / largest for x in entries) if is_known else ())

@@ -26,12 +26,14 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from itertools import combinations, count, product
+from math import lcm
 from random import Random
 from typing import Generic, TypeVar
 
-from flint import acb, fmpz_mpoly, nmod_mat, nmod_poly
+from flint import acb, acb_mat, fmpz_mpoly, fmpz_poly, nmod_mat, nmod_poly
 
 from symflex.algebra import LAPLACE, Factored, Ring, residue
+from symflex.algebra.polynomial_determinant import determinant, in_one_variable
 from symflex.balls import UndecidedError, eliminate
 from symflex.budget import spend
 from symflex.equations import Equations, radicals_of
@@ -49,6 +51,8 @@ LARGEST_WEIGHT = 997  # of combinations in balls: no model has such numbers by c
 DRAWS = 3  # determinants whose greatest common divisor is taken
 MOST_DEGREE = 2_048  # of a determinant modulo a prime, beyond which it is taken for no polynomial
 MOST_FREE = 8  # null vectors that are looked for at a point
+MOST_DENSE = 64  # rows of a full matrix whose null vector comes from all of it
+FULL = 0.5  # share of entries of a matrix that counts as full; others keep zeros that are exact
 FIRST_POINTS = 16  # at which a determinant is taken first; twice as many until they say its degree
 CHECKS = 2  # points beyond these at which the polynomial has to agree
 
@@ -91,6 +95,27 @@ class SystemMatrix:
             [{j: acb(number(c)) for j, c in row.items()} for row in part] for part in (self.upper, self.lower)
         )
         return SystemValues(upper, lower, self.inputs)
+
+    def determinants(self, independent: Sequence[tuple[int, int]]) -> list[fmpz_poly] | None:
+        """Return the determinants of A and of ``[A B; C D]`` with some outputs and inputs, up to numbers.
+
+        ``None`` where entries are no polynomials in s with rational coefficients.
+        """
+        if self.numeric.equations.definitions:
+            return None
+        rows: list[dict[int, fmpz_poly]] = []
+        for row in (*self.upper, *(self.lower[i] for i, _ in independent)):
+            scale = lcm(*(c.unit.denominator for c in row.values()))
+            rows.append({})
+            for j, c in row.items():
+                is_polynomial = all(e > 0 for _, e in c.factors)
+                entry = in_one_variable((c * scale).expand(), c.ring) if is_polynomial else None
+                if entry is None:
+                    return None
+                rows[-1][j] = entry
+        size = len(self.upper)
+        columns = [*range(size), *(size + j for _, j in independent)]
+        return [determinant(rows[:size], columns[:size]), determinant(rows, columns)]
 
     @cached_property
     def modulo(self) -> PrimeSystem | None:
@@ -232,6 +257,28 @@ def null_vectors(rows: Sequence[Mapping[int, acb]], most: int = MOST_FREE) -> li
     return None
 
 
+def null_vector(rows: Sequence[Mapping[int, acb]]) -> list[acb] | None:
+    """Return balls about the vector that every singular matrix in the balls takes to zero; None if not found.
+
+    >>> vector = null_vector([{0: acb(1), 1: acb(2)}, {0: acb(2), 1: acb(4)}])
+    >>> bool((vector[0] / vector[1]).overlaps(acb(-2)))
+    True
+    """
+    size = len(rows)
+    if size <= MOST_DENSE and sum(map(len, rows)) > FULL * size**2:
+        down, (across,) = _weights(size, 1, 5), _weights(1, size, 6)
+        entries = [
+            [*(row.get(j, ZERO) for j in range(size)), acb(w)] for row, (w,) in zip(rows, down, strict=True)
+        ]
+        bordered = acb_mat([*entries, [*map(acb, across), ZERO]])
+        try:
+            return bordered.solve(acb_mat([*[[0]] * size, [1]])).entries()[:size]
+        except ZeroDivisionError:
+            pass  # more careful pivots may still tell them apart
+    vectors = null_vectors(rows, 1)
+    return vectors[0] if vectors else None
+
+
 # ------------------------------------------------------------------------------------------ modulo a prime
 
 
@@ -343,15 +390,22 @@ class PrimeSystem:
         return nmod_mat(size, size, [int(i == j) for i in range(size) for j in range(size)], self.prime)
 
     def _drawn(self, draw: int) -> Draw:
-        """Return what makes matrices of random numbers, the same in every run."""
-        random = Random(draw)
+        """Return what makes matrices of random numbers, the same in every run and at every s."""
+        places = count()
 
         def matrix(rows: int, columns: int) -> nmod_mat:
-            return nmod_mat(
-                rows, columns, [random.randrange(self.prime) for _ in range(rows * columns)], self.prime
-            )
+            key = (draw, next(places), rows, columns)
+            if key not in self._draws:
+                random = Random(repr(key))
+                numbers = [random.randrange(self.prime) for _ in range(rows * columns)]
+                self._draws[key] = nmod_mat(rows, columns, numbers, self.prime)
+            return self._draws[key]
 
         return matrix
+
+    @cached_property
+    def _draws(self) -> dict[tuple[int, int, int, int], nmod_mat]:
+        return {}
 
     def _polynomial(self, value: Callable[[PrimeValues], int]) -> nmod_poly | None:
         """Return the polynomial in s that has these values."""

@@ -168,6 +168,8 @@ class _CramerQuotients:
 
     def _are_coprime(self, output: str, source: str) -> bool:
         """Tell whether determinants are proved coprime, also modulo the relations of roots."""
+        if not self._determinants.minors.are_expanded:  # a gcd in s alone is no work
+            return False
         if not self._line.prove_coprime(output, source):
             return False
         line = self._line_at_roots if self._radicals else self._line

@@ -200,18 +200,28 @@ class MatrixOnAxis:
                 grid[-1].append(acb_poly([first - constant, *others]))
         return grid
 
-    def in_disc(self, low: float, high: float) -> TaylorForm:
-        """Return the form on a piece within :attr:`used`."""
+    @cached_property
+    def _missing(self) -> arb:
+        """What the series of all functions lack at most, as a Frobenius norm."""
+        with precision(BITS):
+            return sum((f.missing**2 for f in self.every), arb(0)).sqrt().upper()
+
+    def in_disc(self, low: float, high: float, enough: arb | None = None) -> TaylorForm:
+        """Return the form on a piece within :attr:`used`; a ball alone if that is below ``enough``."""
         spend()
         with precision(BITS):
+            rows, columns = self.shape
             middle = (arb(low) + arb(high)) / 2
             half = ((arb(high) - arb(low)) / 2).upper()
-            sharp, wide = (self._grid(acb(0, x)) for x in (middle, middle + arb(0, half)))
-            rows, columns = self.shape
+            wide = self._grid(acb(0, middle + arb(0, half)))
+            if enough is not None:
+                around = acb_mat(rows, columns, [own[0] for own in wide])
+                if norm(around) + self._missing < enough:
+                    return TaylorForm((around,), self._missing, arb("inf"))
+            sharp = self._grid(acb(0, middle))
             chosen = [sharp] * (ORDER - 1) + [wide]
             powers = [acb_mat(rows, columns, [own[k] for own in grid]) for k, grid in enumerate(chosen)]
-            missing = sum((f.missing**2 for f in self.every), arb(0)).sqrt().upper()
-            return TaylorForm(tuple(powers), missing, missing)
+            return TaylorForm(tuple(powers), self._missing, self._missing)
 
     def _grid(self, s: acb) -> list[list[acb]]:
         """Return the first coefficients in t of every entry at ``s + j t``."""

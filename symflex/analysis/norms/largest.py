@@ -148,14 +148,17 @@ class _NormSearch:
                 crude = singular_bound(value)
                 if crude.is_finite() and crude < self.level:
                     return _NormPiece(ends, float(crude), in_disc)
-            form = (self.matrix.in_disc if in_disc else self.matrix.beyond_disc)(low, high)
+            matrix = self.matrix
+            form = matrix.in_disc(low, high, self.level) if in_disc else matrix.beyond_disc(low, high)
             if not form.is_finite:
                 return _NormPiece(ends, inf, in_disc)
+            half = (arb(high - low) / 2).upper()
+            if (size := form.size(half) + form.off) < self.level:
+                return _NormPiece(ends, float(size.upper()), in_disc)
             square = squared(form)
             met = eigenvalue_met(square[0])
             if met > 0:
                 self.meet((met.sqrt() - form.in_middle).lower(), middle)
-            half = arb(high - low) / 2
             return _NormPiece(ends, float((_on(square, half).sqrt() + form.off).upper()), in_disc)
 
     def decide(self, piece: _NormPiece) -> Open[_NormPiece] | None:

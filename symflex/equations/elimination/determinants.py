@@ -25,7 +25,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import inf, log
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import TYPE_CHECKING, ClassVar, Generic, TypeVar
 
 from symflex.algebra import LAPLACE, Factored, Ring, terms_of
 from symflex.algebra.straight_line import Step
@@ -45,6 +45,7 @@ if TYPE_CHECKING:
 
     from symflex.equations import Equations
     from symflex.equations.elimination.closing import SparseRow
+    from symflex.equations.elimination.full import MinorsInS
     from symflex.equations.elimination.star_mesh import Elimination
 
 
@@ -55,7 +56,7 @@ class Determinants:
     equations: Equations  # the system
     system: ClosedSystem  # the same over the closed ring
     reduced: ReducedSystem  # what remains of it without unit pivots
-    minors: Minors  # shared by all determinants
+    minors: Minors | MinorsInS  # shared by all determinants
     den: fmpz_mpoly  # the determinant, not zero, over the closed ring
 
     @staticmethod
@@ -68,8 +69,13 @@ class Determinants:
         order = expansion_order(reduced.rows, reduced.columns)
         if most is None and equations.propagation is not None:
             most = KERNEL_TERMS
-        minors = Minors(tuple(reduced.rows[i] for i in order), ring=system.closure.ring, most=most)
-        den = minors.determinant(sum(1 << c for c in reduced.columns))
+        rows, columns = tuple(reduced.rows[i] for i in order), sum(1 << c for c in reduced.columns)
+        minors: Minors | MinorsInS = (expanded := Minors(rows, ring=system.closure.ring, most=most))
+        if not expanded.are_few(columns):
+            from symflex.equations.elimination.full import MinorsInS  # few systems are full
+
+            minors = MinorsInS.of(rows, reduced.outputs, system.closure.ring) or expanded
+        den = minors.determinant(columns)
         if den.is_zero():
             raise explain_singular(equations)
         return Determinants(equations, system, reduced, minors, den)
@@ -94,6 +100,7 @@ class Determinants:
         return self.system.closure.open(polynomial)
 
 
+FEW_MINORS = 1_000  # a full matrix of 10 rows has more
 MINOR_LIMIT = 200_000  # minors of one system: a full matrix of 17 rows has 131,072, a chain few
 ROW_LIMIT = 700  # unknowns left, not measured: 700 nested masses take 2.4 s and 60 MB
 KERNEL_TERMS = 10_000  # of a minor with kernels: four beams have 2,500; 26,000 take 1 GB
@@ -142,17 +149,28 @@ class LaplaceExpansion(ABC, Generic[Entry, Value]):
     def _left(self, entries: Mapping[int, Entry], columns: int) -> set[int]:
         return {columns & ~(1 << column) for column in entries if columns >> column & 1}
 
-    def _find(self, columns: int) -> None:
-        """Compute a determinant and all its minors, the smallest first: calls go less deep than chains."""
+    def are_few(self, columns: int) -> bool:
+        """Tell whether a determinant takes few minors."""
+        return self._wanted(columns, FEW_MINORS) is not None
+
+    def _wanted(self, columns: int, most: int) -> list[set[int]] | None:
+        """Return the minors that a determinant takes and are not known, by row; None if too many."""
         wanted = [{columns}.difference(self._known)]
         count = len(self._known)
         for entries in self.rows:
             spend()
             count += len(wanted[-1])
-            if count > MINOR_LIMIT:
-                raise _too_large("the determinant has too many minors or terms")
+            if count > most:
+                return None
             below = {remaining for each in wanted[-1] for remaining in self._left(entries, each)}
             wanted.append(below.difference(self._known))
+        return wanted
+
+    def _find(self, columns: int) -> None:
+        """Compute a determinant and all its minors, the smallest first: calls go less deep than chains."""
+        wanted = self._wanted(columns, MINOR_LIMIT)
+        if wanted is None:
+            raise _too_large("the determinant has too many minors or terms")
         for row in reversed(range(len(self.rows))):
             for each in wanted[row]:
                 spend()
@@ -167,6 +185,7 @@ class Minors(LaplaceExpansion["fmpz_mpoly", "fmpz_mpoly"]):
 
     ring: Ring = field(kw_only=True)
     most: int | None = field(default=None, kw_only=True)  # terms of one of them
+    are_expanded: ClassVar[bool] = True
     _bytes: int = 0
 
     def _one(self) -> fmpz_mpoly:

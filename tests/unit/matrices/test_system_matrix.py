@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from flint import acb, arb, nmod_poly
 
 from symflex.balls import precision
-from symflex.matrices.system_matrix import SystemMatrix, interpolated, is_regular, null_vectors
+from symflex.matrices.system_matrix import SystemMatrix, interpolated, is_regular, null_vector, null_vectors
 from symflex.model import Model, with_numbers
 from symflex.transfer.of_model import assemble
 from tests.unit.matrices.models import numbers, of_functions, state_space
@@ -70,3 +71,15 @@ def test_as_many_null_vectors_are_returned_as_the_rank_is_short() -> None:
 def test_a_polynomial_is_found_from_its_values() -> None:
     points = [(s, (3 * s**3 + 2) % 10007) for s in range(5, 12)]
     assert [int(c) for c in interpolated(points, 10007).coeffs()] == [2, 0, 0, 3]
+
+
+def test_the_null_vector_of_a_full_matrix_is_that_of_numpy() -> None:
+    rank_short = np.arange(1.0, 26).reshape(5, 5) ** 2 % 17
+    rank_short[4] = rank_short[:4].sum(axis=0)
+    rows = [{j: acb(x) for j, x in enumerate(row)} for row in rank_short]
+    vector = null_vector(rows)
+    assert vector is not None
+    found = np.array([complex(x).real for x in vector])
+    expected = np.linalg.svd(rank_short)[2][-1]
+    assert np.allclose(found / found[0], expected / expected[0], rtol=1e-9)
+    assert null_vector([{0: acb(0)}, {0: acb(0)}]) is None
