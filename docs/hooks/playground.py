@@ -1,0 +1,96 @@
+"""The playground: what runs symflex in a browser, laid beside the page when there is a folder with it.
+
+``SYMFLEX_WEBASSEMBLY`` names the folder, with Pyodide from npm and wheels for it, as ``.ci/run`` fetches
+them. Without one the site has the page, which says how to build it whole. ``python docs/hooks/playground.py
+FOLDER`` lays out the page alone, to be served from there.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import sys
+import tomllib
+import zipfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from mkdocs.config.defaults import MkDocsConfig
+    from mkdocs.structure.files import Files
+
+ROOT: Final = Path(__file__).parents[2]
+PAGE: Final = ROOT / "docs" / "playground"
+FONT: Final = "symflex-math.woff2"
+RUNTIME: Final = "pyodide.mjs pyodide.asm.mjs pyodide.asm.wasm python_stdlib.zip pyodide-lock.json".split()
+"""Files of Pyodide that a page asks for."""
+EXAMPLES: Final = (
+    "eppinger1988/loops/two_mass_position", "eppinger1988/two_mass", "mechatronics/elastic_joint",
+    "classics/quarter_car", "classics/rod_tip_mass", "classics/one_link_arm", "classics/clamped_free",
+    "eppinger1988/sliding_free_beam", "classics/sallen_key", "transducers/loudspeaker_closed_box",
+    "mechatronics/acc_benchmark", "nonlinear/furuta_pendulum", "mechatronics/delayed_pendulum",
+)  # fmt: skip
+MOMENT: Final = (1980, 1, 1, 0, 0, 0)
+"""Of all files in an archive, so that the same sources make the same bytes."""
+
+
+def on_files(files: Files, config: MkDocsConfig) -> Files:
+    """Lay the parts of the playground beside its page."""
+    from mkdocs.structure.files import File
+
+    for name, content in parts():
+        files.append(File.generated(config, f"playground/{name}", content=content))
+    return files
+
+
+def parts() -> Iterator[tuple[str, bytes]]:
+    """Yield names and contents of the files beside the page's own."""
+    runtime = os.environ.get("SYMFLEX_WEBASSEMBLY")
+    known: dict[str, object] = {"examples": [example(name) for name in EXAMPLES]}
+    if runtime:
+        folder = Path(runtime)
+        for name in RUNTIME:
+            yield f"runtime/{name}", (folder / "node_modules" / "pyodide" / name).read_bytes()
+        wheels = sorted(folder.glob("*.whl"))
+        for wheel in wheels:
+            yield f"wheels/{wheel.name}", wheel.read_bytes()
+        yield "wheels/symflex.zip", package()
+        known["wheels"] = [*(f"wheels/{wheel.name}" for wheel in wheels), "wheels/symflex.zip"]
+    yield "parts.json", json.dumps(known, ensure_ascii=False).encode()
+
+
+def example(name: str) -> dict[str, str]:
+    """Return a model as the page offers it, without the line that names its schema's file."""
+    text = (ROOT / "derivations" / f"{name}.toml").read_text("utf-8")
+    lines = [line for line in text.splitlines(keepends=True) if not line.startswith("#:schema")]
+    return {"title": str(tomllib.loads(text).get("title", name)), "text": "".join(lines)}
+
+
+def package() -> bytes:
+    """Return symflex as an archive."""
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+        for path in sorted((ROOT / "symflex").rglob("*")):
+            if path.is_file() and path.suffix != ".pyc":
+                entry = zipfile.ZipInfo(path.relative_to(ROOT).as_posix(), MOMENT)
+                entry.compress_type = zipfile.ZIP_DEFLATED
+                archive.writestr(entry, path.read_bytes())
+    return packed.getvalue()
+
+
+def lay_out(folder: Path) -> None:
+    """Write the page and its parts as the site has them."""
+    files = {f"playground/{path.name}": path.read_bytes() for path in sorted(PAGE.iterdir())}
+    files |= {f"playground/{name}": content for name, content in parts()}
+    files[f"stylesheets/{FONT}"] = (ROOT / "symflex" / "report" / "fonts" / FONT).read_bytes()
+    for name, content in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+
+
+if __name__ == "__main__":
+    lay_out(Path(sys.argv[1]))
