@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import starmap
 from textwrap import wrap
 from typing import TYPE_CHECKING, Final
 
@@ -28,7 +29,7 @@ from symflex.matrices.transfer_matrix import TransferMatrix
 from symflex.model import Input, Output
 from symflex.print.forms.naming import Naming, names_of
 from symflex.print.forms.printed import PrintedForm
-from symflex.print.text import INDENT, WIDTH, hanging, law_lines
+from symflex.print.text import INDENT, WIDTH, hanging, law_lines, shown
 
 if TYPE_CHECKING:
     import sympy
@@ -136,8 +137,8 @@ def _where_lines(form: MatrixForm, width: int) -> list[str]:
     """Return a line for each name, law and closed form."""
     lines: list[str] = []
     word = "where"
-    for name, expression in form.where:
-        lines += hanging(f"{INDENT}{word} {name} = ", expression, width)
+    for left, right in starmap(shown, form.where):
+        lines += hanging(f"{INDENT}{word} {format_expression(left)} = ", right, width)
         word = "     "
     for law in form.laws:
         for line in law_lines(*law):
@@ -206,9 +207,8 @@ def matrix_latex(matrix: TransferMatrix, form: MatrixForm) -> str:
 
     page = _Latex.of(matrix, form)
     writer = page.writer
-    where = [f"{writer.label(name).latex} = {writer.piece(e).markup}" for name, e in form.where]
-    laws = laws_and_starts(form.lines)
-    where += [f"{writer.piece(a).markup} = {writer.piece(b).markup}" for a, b in laws]
+    both = [*starmap(shown, form.where), *laws_and_starts(form.lines)]
+    where = [f"{writer.piece(a).markup} = {writer.piece(b).markup}" for a, b in both]
     line, _ = page.line(0)
     return rf"{line},\quad \text{{where }} " + r",\; ".join(where) if where else line
 
@@ -393,7 +393,7 @@ def matrix_mathml(matrix: TransferMatrix, form: MatrixForm) -> tuple[MathRow, ..
     if not (matrix.shape == (1, 1) and is_number(form.entries[0][0], 1)):
         parts.append(table_mathml(cells))
     parts.append(vector(matrix.inputs))
-    where = [(label_mathml(name, labels), e) for name, e in form.where]
-    where += [(writer.piece(a).markup, b) for a, b in laws_and_starts(every)]
+    both = [*starmap(shown, form.where), *laws_and_starts(every)]
+    where = [(writer.piece(a).markup, b) for a, b in both]
     lines = (MathRow(left, writer.pieces(right), is_where=True) for left, right in where)
     return (MathRow(vector(matrix.outputs), tuple(parts)), *rows, *lines)

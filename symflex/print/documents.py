@@ -43,17 +43,41 @@ TYPST_SIGNS: Final = {
     "″": "prime.double",
     "‴": "prime.triple",
 }
+LINE_SIGNS: Final = 60  # signs on a line of Typst, which takes some 16 cm
 LONG: Final = "a formula this long is not written"
 
 
 def typst(tf: AnyTransferFunction, form: PrintedForm) -> str:
-    """Return a transfer function as displays of Typst, one a row: ``$ frac(y (s), u (s)) = frac(k, s) $``."""
+    """Return a transfer function as displays of Typst: ``$ frac(y (s), u (s)) &= frac(k, s) $``, where ..."""
     return typst_rows(transfer_function_mathml(tf, form))
 
 
 def typst_rows(rows: Sequence[MathRow] | None) -> str:
-    """Return equations as displays of Typst; None is one that is too long."""
-    return "\n".join(f"$ {left} = {right} $" for left, right in _sides(rows, _typst))
+    """Return equations as aligned displays of Typst, in lines; None is one that is too long."""
+    own = [r for r in rows or () if not r.is_where]
+    displays = [_typst_display(own) if rows is not None else f"$ {_typst(_too_long())} $"]
+    if below := [r for r in rows or () if r.is_where]:
+        displays += ["where", _typst_display(below)]
+    return "\n".join(displays)
+
+
+def _typst_display(rows: Sequence[MathRow]) -> str:
+    """Return equations aligned at their equals signs, further lines of long ones indented."""
+    lines = []
+    for row in rows:
+        broken: list[list[str]] = [[]]
+        for piece in row.pieces:
+            if broken[-1] and _signs("".join(broken[-1])) + _signs(piece) > LINE_SIGNS:
+                broken.append([])
+            broken[-1].append(piece)
+        first, *more = (_typst(_read("".join(line))) for line in broken)
+        lines += [f"{_typst(_read(row.left))} &= {first}", *(f"& quad quad {line}" for line in more)]
+    return "$ " + " \\\n  ".join(lines) + " $"
+
+
+def _signs(markup: str) -> int:
+    """Return about how many signs markup shows."""
+    return len("".join(_read(markup).itertext()))
 
 
 def omml(tf: AnyTransferFunction, form: PrintedForm) -> str:
@@ -70,9 +94,13 @@ def omml_rows(rows: Sequence[MathRow] | None) -> str:
 
 def _sides(rows: Sequence[MathRow] | None, spell: Callable[[Element], str]) -> list[tuple[str, str]]:
     if rows is None:
-        word = ElementTree.fromstring(f"<mtext>{LONG}</mtext>")
-        return [(spell(word), spell(word))]
+        return [(spell(_too_long()), spell(_too_long()))]
     return [(spell(_read(row.left)), spell(_read("".join(row.pieces)))) for row in rows]
+
+
+def _too_long() -> Element:
+    """Return what stands for a formula that is not written."""
+    return ElementTree.fromstring(f"<mtext>{LONG}</mtext>")
 
 
 def _read(markup: str) -> Element:

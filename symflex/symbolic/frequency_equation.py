@@ -31,9 +31,10 @@ from symflex.library.elements import LineElement
 from symflex.print.forms.arrange import Arranger, ProductPrinter
 from symflex.print.forms.frequency import FrequencyPage
 from symflex.print.forms.invariants import IMAGINARY
-from symflex.print.forms.naming import Naming
+from symflex.print.forms.naming import RATIOS, Naming
 from symflex.print.forms.notation import plain_printer, wave_times_length, wavenumber_laws
 from symflex.print.roots import roots_of
+from symflex.quantities import unit_of
 from symflex.roots import PoleZeroMap, Root
 from symflex.symbolic.roots import MOST_TERMS, LetterReader, RootFormula, SymbolicFactor, numbered
 from symflex.symbolic.routh import BITS, Signs
@@ -92,9 +93,10 @@ def frequency_equations(reader: LetterReader, located: PoleZeroMap) -> list[Symb
     naming.keep([Q])
     plain = {k.generator: (k.function, k.wavenumber, k.length) for k in tf.kernels.kernels}
     turning = {g: (f, a.wavenumber, a.length) for a, own in page.angles() for f, g in own.items()}
+    named: list[tuple[str, Factored]] = []
     axes = (
-        (_Axis(reader, "omega", page.ring, turning, page.laws(), naming), page.value().factors),
-        (_Axis(reader, "sigma", tf.ring, plain, wavenumber_laws(tf), naming), tf.ratio.factors),
+        (_Axis(reader, "omega", page.ring, turning, page.laws(), naming, named), page.value().factors),
+        (_Axis(reader, "sigma", tf.ring, plain, wavenumber_laws(tf), naming, named), tf.ratio.factors),
     )
     made = [
         axis.equation(part, kind, functions)
@@ -121,6 +123,7 @@ class _Axis:
     functions: Mapping[str, tuple[str, str, Factored]]
     laws: Mapping[str, Factored]  # products that are one
     naming: Naming
+    named: list[tuple[str, Factored]]  # ratios that have letters, of any factor
 
     def place(self, root: Root) -> arb:
         """Return where a root is on the axis, 0 of one that is not proved to be there."""
@@ -194,8 +197,15 @@ class _Axis:
             rests = [(held, ratio / prod((ratios[a] for a in held), start=ratio**0)) for held in products]
             held, remainder = next(((held, x) for held, x in rests if x.is_constant), ((), ratio))
             if not remainder.is_constant:
-                held = self.naming.take("mu" if n > first else "kappa")
-                ratios[held[0]], remainder = ratio / ratio.unit, ratio**0 * ratio.unit
+                plain_ratio = ratio / ratio.unit
+                known = next((name for name, x in self.named if (x / plain_ratio).is_one), None)
+                held = (
+                    (known,)
+                    if known
+                    else self.naming.take(self._letter(ratio, "mu" if n > first else "kappa"))
+                )
+                self.named.append((held[0], plain_ratio))
+                ratios[held[0]], remainder = plain_ratio, ratio**0 * ratio.unit
             groups.setdefault((held, n), {})[0, *shape] = remainder.unit
         small, least = Ring((LAPLACE, *kernels)), min(n for _, n in groups)
         below = lcm(*(c.denominator for group in groups.values() for c in group.values()))
@@ -207,6 +217,17 @@ class _Axis:
             total = printer.sum(small.context.from_dict({m: int(c * below) for m, c in group.items()}))
             parts.append(product_of([*map(Name, held), power(q, n - least), total]))
         return ratios, sum_of(parts)
+
+    def _letter(self, ratio: Factored, usual: str) -> str:
+        """Return the letter of a ratio, by the unit of what is divided where one is declared."""
+        above = self.reader.tf.ring.used_in(f for f, e in ratio.factors if e > 0)
+        units = [
+            str(unit_of(p.unit).dimension)
+            for p in self.reader.tf.model.parameters
+            if p.name in above and p.unit
+        ]
+        letters = [RATIOS[unit][0] for unit in units if unit in RATIOS and unit != "m"]
+        return letters[0] if letters else usual
 
     def _solutions(
         self, factor: Expression, scale: arb, order: int, known: Mapping[str, acb], roots: Sequence[Root]

@@ -33,7 +33,7 @@ from symflex.model import ExactValue, with_numbers
 from symflex.model.linearity import factored_of
 from symflex.model.model import ModelParameter
 from symflex.print.forms import print_form
-from symflex.print.forms.naming import Naming
+from symflex.print.forms.naming import RATIOS, Naming
 from symflex.print.forms.printed import PrintedForm, S
 from symflex.print.forms.shapes import plain, powers_of
 from symflex.print.label import symbol
@@ -59,14 +59,6 @@ Exponents = dict[str, Fraction]  # a product of powers of quantities
 ONE: Final = Fraction(1)
 BASE: Final = ("m", "kg", "N/m", "kg*m^2", "N*m", "H", "F")  # units that groups are ratios to, in this order
 DAMPERS: Final = ("N*s/m", "N*m*s", "Ohm")  # units of damping, in no base as long as there is another choice
-NAMES: Final = {  # names of groups, by the unit of what is divided
-    "kg": ("mu", "mass ratio"),
-    "N/m": ("kappa", "stiffness ratio"),
-    "N*m": ("kappa", "stiffness ratio"),
-    "kg*m^2": ("nu", "inertia ratio"),
-    "m": ("lambda", "length ratio"),
-    "s": ("tau", "time ratio"),
-}
 BITS, ENOUGH = 192, 64  # precision at the test points, and how many bits of it have to agree
 
 
@@ -140,7 +132,7 @@ def _named_groups(
     units = {p.name: unit_of(p.unit or "1").dimension for p in tf.parameters} | {S.name: Dimension(s=-ONE)}
     for main, row in groups.items():
         unit = str(units[main]) if main != S.name else ""
-        name, words = ("S", "") if main == S.name else NAMES.get(unit, ("Pi", ""))
+        name, words = ("S", "") if main == S.name else RATIOS.get(unit, ("Pi", ""))
         is_ratio = unit in DAMPERS and {abs(n) for k, n in row.items() if k != main} == {ONE / 2}
         (name,), words = naming.take("zeta" if is_ratio else name), "damping ratio" if is_ratio else words
         halves: dict[Expression, Fraction] = {e.number(2): ONE} if is_ratio else {}

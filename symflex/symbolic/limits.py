@@ -41,7 +41,7 @@ from symflex.print.forms.root_of_s import in_roots
 from symflex.print.forms.shapes import of_powers, powers_of
 from symflex.print.latex.equation import model_labels, ratio_latex
 from symflex.print.latex.expression import Writer
-from symflex.print.text import WIDTH, broken, hanging
+from symflex.print.text import WIDTH, broken, hanging, shown
 from symflex.quantities import Dimension, unit_of
 from symflex.symbolic.routh import aligned, read
 from symflex.transfer import AnyTransferFunction
@@ -140,7 +140,10 @@ class SymbolicForm:
         tf, lines = self.tf, []
         for row in (*self.rows, *self.where):
             comment = f"   {row.comment}" if row.comment else ""
-            lines += hanging(f"  {row.name}{row.relation} ", row.expression, width, comment)
+            head, right = f"  {row.name}", row.expression
+            if (both := shown(row.name, right))[1] != right:
+                head, right = f"  {format_expression(both[0])}", both[1]
+            lines += hanging(f"{head}{row.relation} ", right, width, comment)
         lines += [part for note in self.notes for part in broken(f"  {note}", width)]
         unit = f" [{tf.unit}]" if tf.unit else ""
         return "\n".join([f"{tf.name}   {tf.quantity}{unit}", "", *lines, ""])
@@ -148,7 +151,11 @@ class SymbolicForm:
     def latex(self) -> str:
         """Return the lines as a display."""
         writer = Writer(model_labels(self.tf.model))
-        rows = (f"  {row.left} {writer.piece(row.expression).markup}" for row in (*self.rows, *self.where))
+        rows = []
+        for row in (*self.rows, *self.where):
+            left, (power, right) = row.left, shown(row.name, row.expression)
+            left = left if right == row.expression else f"{writer.piece(power).markup} &="
+            rows.append(f"  {left} {writer.piece(right).markup}")
         return "\n".join([*(f"% {note}" for note in self.notes), *aligned([*rows])])
 
     def to_json_dict(self) -> dict[str, object]:

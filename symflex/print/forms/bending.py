@@ -22,7 +22,7 @@ from symflex.algebra import Dispersion, Factored, KernelTable, Ring
 from symflex.algebra.normal_form import NormalForm
 from symflex.print.forms.economical import apart, economical
 from symflex.print.forms.invariants import Invariants, in_krylov_functions, krylov_name
-from symflex.print.forms.notation import BETA
+from symflex.print.forms.naming import BETA
 from symflex.transfer import TransferFunction
 
 FOURTH: Final = Fraction(-1, 4)  # what mu^4 is of beta^4

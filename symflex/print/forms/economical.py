@@ -21,7 +21,8 @@ from symflex.algebra import LAPLACE, Factored, Kernel, KernelTable, Ring, compos
 from symflex.algebra.normal_form import NormalForm
 from symflex.print.forms.arrange import with_squares
 from symflex.print.forms.invariants import IMAGINARY, factor_by_factor, in_exponentials, real_powers
-from symflex.print.forms.notation import BETA, Angle, angles_of
+from symflex.print.forms.naming import BETA
+from symflex.print.forms.notation import Angle, angles_of
 from symflex.transfer import TransferFunction
 
 DOUBLINGS = 8  # halvings that are undone at most

@@ -28,7 +28,7 @@ from symflex.print.forms.bending import as_in_books, in_beta
 from symflex.print.forms.economical import added
 from symflex.print.forms.invariants import IMAGINARY
 from symflex.print.forms.kept import KeptDefinitions
-from symflex.print.forms.naming import Naming
+from symflex.print.forms.naming import BETA, Naming
 from symflex.print.forms.notation import (
     Angle,
     Line,
@@ -193,7 +193,7 @@ class FrequencyPage:
         axis = self.printer(symbols)
         lengths = plain_printer(tf)
         waves = [w for d in tf.kernels.dispersions for w in d.wavenumbers]
-        symbols |= {w: Name(n) for w, n in zip(waves, naming.take("beta", len(waves)), strict=True)}
+        symbols |= {w: Name(n) for w, n in zip(waves, naming.take(BETA, len(waves)), strict=True)}
         functions = [f for f in self.angles() if used.intersection(f[1].values())]
         products = [wave_times_length(lengths, symbols[a.wavenumber], a.length) for a, _ in functions]
         arguments, lines = _short_or_named(products, "q", naming)

@@ -21,8 +21,8 @@ from symflex.algebra import Factored, KernelTable
 from symflex.errors import InternalError
 from symflex.expressions import Expression, Name, format_expression, number, product_of, quotient, substitute
 from symflex.print.forms.arrange import Arranger
-from symflex.print.forms.naming import Naming
-from symflex.print.forms.notation import BETA, Line, angles_of, constant_symbols, notation_of, reachable
+from symflex.print.forms.naming import BETA, Naming
+from symflex.print.forms.notation import Line, angles_of, constant_symbols, notation_of, reachable
 from symflex.print.forms.polynomial import kernel_printer
 from symflex.print.forms.printed import PrintedForm
 from symflex.print.forms.shapes import powers_of

@@ -1,14 +1,26 @@
-"""Names that collide with none of the model, handed out once each."""
+"""Names that collide with none of the model, handed out once each, and the letters that all commands use."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
 from itertools import count, islice
+from typing import Final
 
 from symflex.algebra import LAPLACE
 from symflex.expressions import FUNCTIONS
 from symflex.model import Model
 from symflex.transfer import TransferFunction
+
+ALPHA, BETA, GAMMA, LAMBDA = "alpha", "beta", "gamma", "lambda"
+"""Wavenumbers: of a beam, ``4 alpha^4 = c_0`` and ``beta^4 = -c_0``; of a rod, shaft or string; of a pair."""
+RATIOS: Final = {  # dimensionless groups, by the unit of what is divided
+    "kg": ("mu", "mass ratio"),
+    "N/m": ("kappa", "stiffness ratio"),
+    "N*m": ("kappa", "stiffness ratio"),
+    "kg*m^2": ("nu", "inertia ratio"),
+    "m": ("lambda", "length ratio"),
+    "s": ("tau", "time ratio"),
+}
 
 
 class Naming:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import count
-from typing import Final
 
 from symflex.algebra import LAPLACE, Dispersion, Factored, Kernel, KernelTable, Ring
 from symflex.expressions import (
@@ -27,11 +26,10 @@ from symflex.expressions import (
 from symflex.print.forms.arrange import Arranger, ProductPrinter, length_sides
 from symflex.print.forms.arranged import Arranged
 from symflex.print.forms.kept import KeptDefinitions
-from symflex.print.forms.naming import Naming
+from symflex.print.forms.naming import ALPHA, BETA, GAMMA, LAMBDA, Naming
 from symflex.transfer import TransferFunction
 
 Line = tuple[str, Expression]
-BETA: Final = "beta"  # the wavenumber of a beam of which :mod:`symflex.print.forms.bending` makes functions
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -79,7 +77,7 @@ def plain_printer(
 def notation_of(
     tf: TransferFunction, used: Collection[str], naming: Naming, table: KernelTable | None = None
 ) -> Notation:
-    """Return names for the arguments ``q = mu*l``, the wavenumbers and what these are made of."""
+    """Return names for the arguments ``q = beta*l``, the wavenumbers and what these are made of."""
     printer = plain_printer(tf)
     angles = angles_of(table or tf.kernels, used)
     symbols: dict[str, Expression] = {}
@@ -191,7 +189,7 @@ def wave_notation(tf: TransferFunction, dispersions: Iterable[Dispersion], namin
         lines.append((name, fourth_root(printer.quotient(d.characteristic[0] / 4))))
     lossless = [d for d in bending if speed_squared(d) is not None]
     speeds = dict(zip(lossless, naming.take("a", len(lossless)), strict=True))
-    for name, d in zip(naming.take("mu", len(bending)), bending, strict=True):
+    for name, d in zip(naming.take(ALPHA, len(bending)), bending, strict=True):
         symbols[d.wavenumbers[0]] = Name(name)
         square = speed_squared(d)
         if square is None:
@@ -200,11 +198,11 @@ def wave_notation(tf: TransferFunction, dispersions: Iterable[Dispersion], namin
             a = speeds[d]
             lines.append((name, Call("sqrt", quotient(Name(LAPLACE), product_of([number(2), Name(a)])))))
             lines.append((a, printer.square_root(square)))
-    for name, d in zip(naming.take("gamma", len(by_kind["wave"])), by_kind["wave"], strict=True):
+    for name, d in zip(naming.take(GAMMA, len(by_kind["wave"])), by_kind["wave"], strict=True):
         symbols[d.wavenumbers[0]] = Name(name)
         lines.append((name, printer.square_root(-d.characteristic[0])))
     pairs = by_kind["pair"]
-    lambdas = naming.take("lambda", 2 * len(pairs))
+    lambdas = naming.take(LAMBDA, 2 * len(pairs))
     deltas = naming.take("delta", len(pairs))
     for i, d in enumerate(pairs):
         names_of_pair = (lambdas[2 * i], lambdas[2 * i + 1])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
+from itertools import starmap
 from typing import Final
 
 from symflex.audit import Audit
@@ -33,6 +34,7 @@ from symflex.print.mathml import (
     transfer_function_mathml,
 )
 from symflex.print.motion import solved_values
+from symflex.print.text import shown
 from symflex.report.document import (
     Badge,
     Block,
@@ -257,7 +259,8 @@ def equations(
         return (writer.piece(expression).markup,) if is_narrow else writer.pieces(expression)
 
     rows = [MathRow(left_side.mathml, pieces(e)) for left_side, e in sides]
-    rows += [MathRow(label_mathml(n, labels), writer.pieces(e), is_where=True) for n, e in where]
+    both = starmap(shown, where)
+    rows += [MathRow(writer.piece(left).markup, writer.pieces(e), is_where=True) for left, e in both]
     latex = formula_latex(
         [(left_side.latex, e) for left_side, e in sides], where, labels, width_mm=TEXT_WIDTH_MM
     )

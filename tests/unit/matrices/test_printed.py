@@ -31,7 +31,7 @@ def test_a_name_of_a_beam_stands_for_one_thing_in_all_entries() -> None:
     meanings = [format_expression(e) for _, e in form.where]
     assert len(set(names)) == len(names)
     assert len(set(meanings)) == len(meanings)
-    assert {"mu*l", "l*mu/2"} & set(meanings)
+    assert {"alpha*l", "l*alpha/2"} & set(meanings)
 
 
 def test_every_form_that_both_parts_have_can_be_asked_for() -> None:

@@ -173,7 +173,7 @@ SHOWN = {
     ),
     # K_0 of l is the numerator: the tip and the slider move alike where cos cosh = 0.
     "Krylov-Duncan functions of the free beam": (
-        ("sliding_free_beam", "V_tip/F", "krylov"), "K_0", "rho*A*s*(4*mu^4*K_2*K_3 + K_0*K_1)",
+        ("sliding_free_beam", "V_tip/F", "krylov"), "K_0", "rho*A*s*(4*alpha^4*K_2*K_3 + K_0*K_1)",
     ),
     # Rao, Vibration of Continuous Systems, chapter 9: the stiffness E A gamma beside the inertia m s^2.
     "a rod with a mass has its stiffness in the characteristic equation": (

@@ -8,7 +8,7 @@ import pytest
 import symflex
 from symflex import pipeline
 from symflex.codegen.exporters import EXPORTERS
-from symflex.print.documents import omml
+from symflex.print.documents import omml, typst
 from symflex.print.forms import print_forms
 from tests.house.repository import ROOT
 
@@ -121,6 +121,15 @@ def test_office_math_reads_as_the_function(name):
             values[reader.name(head) if own else GREEK.get(text, text)] = result
     bound = symflex.load(ROOT / "derivations" / f"{name}.toml").transfer_function(tf.name).bind()
     assert result == pytest.approx(complex(bound(S)), rel=1e-9)
+
+
+def test_typst_breaks_long_lines_and_says_where_names_come_from():
+    _, tf, form = printed("eppinger1988/robot_axis")
+    formula, below = typst(tf, form).split("\nwhere\n")
+    assert formula.startswith('$ frac(V_(upright("act")) (s), V_(upright("cmd")) (s)) &= ')
+    assert " \\\n  & quad quad + " in formula
+    assert "q &= β l \\\n" in below
+    assert "β^(4) &= - frac(ρ A s^(2), E I (η s + 1)) $" in below
 
 
 @pytest.mark.slow

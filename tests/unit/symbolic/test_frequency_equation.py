@@ -1,6 +1,7 @@
 """Frequency equations: solutions of the equations of books, found by mpmath, and refusals."""
 
 from itertools import pairwise
+from pathlib import Path
 
 import mpmath
 import pytest
@@ -9,6 +10,7 @@ from symflex import pipeline
 from symflex.symbolic.frequency_equation import symbolic_roots
 from symflex.symbolic.roots import SymbolicFactor
 
+CLASSICS = Path(__file__).parents[3] / "derivations" / "classics"
 BEAM = 'b = { type = "beam", between = ["%s", "%s"], E = "E", I = "I", rho = "rho", A = "A", l = "l" }'
 GUIDE = ', g = { type = "slider", at = "%s" }'
 PIN = ', p = { type = "pin", at = "%s" }'
@@ -144,3 +146,13 @@ def test_losses_and_two_wavenumbers_are_refused_with_a_reason() -> None:
     tense = (BEAM % ("ground", "x")).replace('E = "E"', 'E = "E", N = "N"')
     (refused,) = equations_of(tense, PUSH)
     assert "Euler beams" in refused.note
+
+
+def test_ratios_have_one_letter_in_all_factors_and_that_of_their_unit():
+    """Hub and tip mass of an arm: nu = J_h/(rho A l^3), mu = m/(rho A l), in poles as in zeros."""
+    model = pipeline.load(CLASSICS / "one_link_arm.toml")
+    tf = pipeline.derive_all(model, [("theta_hub", "tau")])[0]
+    bound = pipeline.bind(tf)
+    found = symbolic_roots(tf, bound, pipeline.roots(bound))
+    ratios = {str(f) for each in found for f in each.formulas if not f.name.startswith(("omega", "sigma"))}
+    assert ratios == {"nu = J_h/(rho*A*l^3)", "mu = m/(rho*A*l)"}

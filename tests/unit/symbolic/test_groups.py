@@ -191,3 +191,10 @@ def test_a_model_may_prefer_groups(prefer: str, wanted: str) -> None:
 )
 def test_what_has_no_groups_is_told_why(text: str, parameters: dict[str, str], reason: str) -> None:
     assert reason in str(reading_of(text, parameters))
+
+
+def test_a_fourth_root_is_shown_by_its_fourth_power_in_text_and_latex() -> None:
+    # q^4 = rho A omega^2 l^4/(E I) = -S^2 (Rao 2007, chapter 11)
+    reading = reading_of(BEAM + TIP, OF_BEAM)
+    assert "  q^4 = -S^2" in reading.text().splitlines()
+    assert "q^{4} &= -S^{2}" in reading.latex()
