@@ -472,6 +472,11 @@ class StabilityOptions:
     tf: str | None = option(None, "--tf", **ONE_TF)
     format: str = option("text", "--format", choices=("text", "latex"), **SHOWN, help="Format of --symbolic.")
     spread: Stated | None = option(None, "--spread", **SPREAD)
+    is_matrix: bool = option(
+        False, "--matrix", help="Close a loop from each output to the input in its place, with minus."
+    )
+    inputs: str = option("", "--in", **ENDS, help="--matrix: inputs, such as u1,u2.  [default: all]")
+    outputs: str = option("", "--out", **ENDS, help="--matrix: outputs, such as y1,y2.  [default: all]")
     as_json: bool = option(False, "--json", **JSON)
 
 

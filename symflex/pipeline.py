@@ -42,6 +42,7 @@ from symflex.transfer.of_model import (
 )
 
 if TYPE_CHECKING:
+    from symflex.analysis.norms.closed_loops import ClosedLoops
     from symflex.data.fitting.machine import Derived, Machine, MachineFunction
     from symflex.data.fitting.parameter_fit import ParameterFit
     from symflex.data.measurement import MeasuredResponse
@@ -123,6 +124,7 @@ def machine_of(
     allow_outside: Iterable[str | Path] = (),
 ) -> Machine:
     """Return the functions of a specification that were measured, ready for fits of some parameters."""
+    from symflex.analysis.norms.closed_loops import ClosedLoops
     from symflex.data.fitting.machine import refuse_free
 
     model = load(path, allow_outside)
@@ -161,6 +163,7 @@ def _machine(
     omega: tuple[float, float],
 ) -> Machine:
     """Return functions with derivatives in some parameters, and what of these they tell apart."""
+    from symflex.analysis.norms.closed_loops import ClosedLoops
     from symflex.codegen.program.evaluate import Gradient
     from symflex.codegen.program.verify import choose_programs
     from symflex.data.fitting.identifiable import Coefficients, identify
@@ -205,6 +208,7 @@ def stability(
 
 def _derived_values(model: Model, names: Sequence[str]) -> tuple[Derived, ...]:
     """Return the definitions without s that depend on some parameters."""
+    from symflex.analysis.norms.closed_loops import ClosedLoops
     from symflex.codegen.program.build import constant_of
     from symflex.codegen.program.derivative import differentiated
     from symflex.codegen.program.evaluate import values_of
@@ -224,3 +228,33 @@ def _derived_values(model: Model, names: Sequence[str]) -> tuple[Derived, ...]:
         code = differentiated(straight(forge, [constant_of(forge, model, definition.expression)]), names)
         found.append(Derived(definition.name, "", partial(values_of, code)))
     return tuple(found)
+
+
+def closed_loops(model: Model, outputs: Sequence[str] = (), inputs: Sequence[str] = ()) -> ClosedLoops:
+    """Close loops from outputs to as many inputs, in order, each with minus; SF902 for other numbers of them.
+
+    Stability, encirclements of det(I + L) and the largest singular values of S, T and S - T are proved.
+    """
+    from symflex.analysis.norms.closed_loops import closed_loops as found_of  # few ask for matrices
+    from symflex.matrices.constrained import closed, closed_at_once, driven_at_once
+    from symflex.matrices.transfer_matrix import picked
+    from symflex.roots.locate import locate
+
+    rows = picked("output", outputs, [o.name for o in model.outputs])
+    columns = picked("input", inputs, [i.name for i in model.inputs])
+    if len(rows) != len(columns):
+        message = f"loops go from as many outputs to as many inputs, not from {len(rows)} to {len(columns)}"
+        raise refused(message, "choose them with --out and --in, in order")
+    pairs = list(zip(rows, columns, strict=True))
+    verdicts = []
+    for each in (driven_at_once(model, rows, columns), closed_at_once(model, pairs)):
+        (bound,) = derive_for_roots(each, [(each.outputs[0].name, each.inputs[0].name)])
+        verdicts.append(locate(bound, None, 15, with_zeros=False).verdict)
+    whole, given, read = closed(model, pairs)
+    count = len(pairs)
+    functions = []
+    if verdicts[1].word == "stable":
+        bounds = derive_for_roots(whole, [(y, r) for y in read for r in given], is_explained=True)
+        by_row = [bounds[i : i + count] for i in range(0, len(bounds), count)]
+        functions = [by_row[i : i + count] for i in range(0, len(by_row), count)]
+    return found_of((rows, columns), (verdicts[0], verdicts[1]), functions)

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
+    from symflex.analysis.norms.closed_loops import ClosedLoops
     from symflex.analysis.norms.energy import H2Norm
     from symflex.analysis.norms.reduced import ReducedModel
     from symflex.figures import AxesGiven
@@ -528,6 +529,25 @@ class BoundTransferMatrix(_Indexed):
         from symflex.analysis.norms.matrix_peak import find_matrix_peak
 
         return find_matrix_peak(self.exact.pairs, band)
+
+    def closed_loops(self) -> ClosedLoops:
+        """Close a loop from each output to the input in its place, with minus, all at once.
+
+        Returns whether they are stable together, how often det(I + L) encircles 0 clockwise, and the largest
+        singular values of S, T and S - T with the disk margin, all proved.
+
+        Examples
+        --------
+        >>> import symflex
+        >>> outputs = {"y": "u/(s + 1) + 2*v/(s + 3)", "z": "u/(s + 1) + v/(s + 1)"}
+        >>> loops = symflex.Model(inputs={"u": {}, "v": {}}, outputs=outputs).transfer_matrix().bind()
+        >>> found = loops.closed_loops()
+        >>> found.closed.word, found.encirclements, round(float(found.peaks.disk["alpha"].mid()), 4)
+        ('stable', 0, 1.5299)
+        """
+        from symflex import pipeline
+
+        return pipeline.closed_loops(self._stated, self.outputs, self.inputs)
 
     def h2(self, noise: str = "") -> H2Norm:
         """Return the H2 norm of the matrix; see :meth:`BoundTransferFunction.h2`."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -276,6 +277,10 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
     --symbolic prints inequalities in the parameters that hold exactly where all poles, or with --of zeros all
     zeros of a transfer function, lie in the left half-plane; with --over twice, the boundary as a curve.
 
+    --matrix closes several loops at once, from outputs to inputs in order, each with minus. It prints whether
+    they are stable together, how often det(I + L) encircles 0, and the largest singular values of S and T
+    with the disk margin.
+
     Exit code 4: something is not certified, as the output lists. Undamped structures have poles all
     along the axis; these are counted up to a frequency, which is printed.
     """
@@ -284,6 +289,9 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
     from symflex.loops.spread import stability_spread
 
     model = spec.load()
+    if given.is_matrix:
+        return _closed_loops(model, given)
+    refuse_ends(given)
     if given.gain and (given.over or given.symbolic):
         other = "--symbolic" if given.symbolic else "--over"
         raise refused(f"give only one of --gain and {other}")
@@ -306,6 +314,18 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
             stable = pipeline.stability(model, given)
     answer(given.as_json, stable.to_json_dict, lambda: str(stable))
     return 0 if stable.certified else 4
+
+
+def _closed_loops(model: Model, given: StabilityOptions) -> int:
+    """Print what is known of several loops that are closed at once."""
+    from symflex import pipeline
+
+    others = replace(given, is_matrix=False, inputs="", outputs="", as_json=False)
+    if vars(others) != vars(StabilityOptions()):
+        raise refused("--matrix closes all loops as they are: it goes with --in, --out and --json alone")
+    found = pipeline.closed_loops(model, names_in(given.outputs), names_in(given.inputs))
+    answer(given.as_json, found.to_json_dict, lambda: str(found))
+    return 0 if found.certified else 4
 
 
 @command_of("contact", ContactOptions, Ranged)

@@ -54,6 +54,43 @@ def imposed(model: Model, pairs: Sequence[tuple[str, str]]) -> Model:
     )
 
 
+def closed(model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[Model, Names, Names]:
+    """Return a model whose loops are closed with minus, with the names of its new inputs and outputs.
+
+    Each pair's input is what is given minus its output. The outputs are the inputs, S, then the outputs, T,
+    and then S - T, in order.
+    """
+    count = len(pairs)
+    names = _new_names(model, 5 * count)
+    given, laws, read = names[:count], names[count : 2 * count], names[2 * count :]
+    outputs, inputs = [y for y, _ in pairs], [u for _, u in pairs]
+    fed_back = _read(model, outputs)
+    free = [Name(u) for u in inputs]
+    shown = [*free, *fed_back, *(sum_of([u, Negative(y)]) for u, y in zip(free, fed_back, strict=True))]
+    law = [
+        Output(name, sum_of([u, y, Negative(Name(r))]))
+        for name, u, y, r in zip(laws, free, fed_back, given, strict=True)
+    ]
+    whole = replace(
+        model,
+        inputs=(*(Input(name, "signal") for name in given), *model.inputs),
+        outputs=(*(Output(name, e) for name, e in zip(read, shown, strict=True)), *law),
+        imposed=tuple((each.name, u) for each, u in zip(law, inputs, strict=True)),
+        figures=(),
+        published=(),
+        tables=(),
+    )
+    return whole, given, read
+
+
+def closed_at_once(model: Model, pairs: Sequence[tuple[str, str]]) -> Model:
+    """Return a model of one input and one output whose poles are those of the loops closed with minus."""
+    given, read, *names = _new_names(model, 2 + len(pairs))
+    outputs, inputs = [y for y, _ in pairs], [u for _, u in pairs]
+    sums = [sum_of([Name(u), y]) for u, y in zip(inputs, _read(model, outputs), strict=True)]
+    return _turned(model, _imposing(names, sums, given), inputs, given, Output(read, _sum(inputs)))
+
+
 def _imposing(names: Names, values: Sequence[Expression], given: str) -> list[Output]:
     """Return the outputs that are zero where values are what is given, times numbers."""
     weights = _drawn(len(values), 1)
