@@ -53,6 +53,8 @@ Kind = tuple[str, bool | None, Sequence[SymbolicRelation]]
 PAIR: Final = 2  # degree of a factor with a natural frequency and a damping ratio
 IF: Final = " if "
 LONGEST: Final = 140  # characters of a formula or a side of a condition that one still reads off
+MOST_OFF: Final = 0.2  # part of a value by which an approximation of a mode may be off
+SMALL: Final = 0.06  # part of the largest term of a coefficient from which an approximation keeps others
 MOST_TERMS: Final = 200  # terms of a factor that is read back; longer ones have no short formulas
 
 
@@ -65,9 +67,10 @@ class RootFormula:
     value: arb | None  # of the roots, not of the expression; None of what is different for each
     unit: str = ""
     roots: tuple[Root, ...] = ()
+    off: arb | None = None  # of an approximation, how much larger than the value it is, as a part of that
 
     def __str__(self) -> str:
-        return f"{self.name} = {format_expression(self.expression)}"
+        return f"{self.name} {'=' if self.off is None else '~'} {format_expression(self.expression)}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,6 +83,7 @@ class SymbolicFactor:
     kinds: tuple[Kind, ...] = ()
     solutions: tuple[tuple[arb, Root], ...] = ()  # q of a frequency equation, and the root it belongs to
     note: str = ""  # why there is no formula, or what all solutions are
+    approximations: tuple[RootFormula, ...] = ()  # of modes that are far apart
 
     def lines(self) -> Iterator[str]:
         """Yield what is said, a sentence a line; 1/(2 zeta) is for programs."""
@@ -94,6 +98,11 @@ class SymbolicFactor:
             yield f"q = {', '.join(figure(q, 2 * SHORT_DIGITS) for q, _ in self.solutions)}, ..."
         yield from (f"{text}{', as here' * bool(holds and IF in text)}" for text, holds, _ in self.kinds)
         yield from [self.note] * bool(self.note)
+        for f in self.approximations:
+            if f.value is not None and f.off is not None:
+                exact = f"{figure(f.value, SHORT_DIGITS, trimmed=True)} {f.unit}".rstrip()
+                side = "above" if f.off > 0 else "below"
+                yield f"{f}, {figure(abs(f.off) * 100, 2, trimmed=True)} % {side} {exact}"
 
     def to_json_dict(self, digits: int) -> dict[str, object]:
         """Return the factor as JSON data."""
@@ -105,6 +114,7 @@ class SymbolicFactor:
             "q": [figure(q, digits) for q, _ in self.solutions],
             "kinds": [{"statement": text, "holds": holds} for text, holds, _ in self.kinds],
             "note": self.note,
+            "approximations": {f.name: format_expression(f.expression) for f in self.approximations},
         }
 
 
@@ -125,6 +135,9 @@ def symbolic_latex(found: Sequence[SymbolicFactor], model: Model) -> str:
         rows = [f"{latex_expression(each.factor, labels)} &= 0"] if each.factor else []
         for f in each.formulas:
             rows.append(f"{latex_expression(Name(f.name), {})} &= {latex_expression(f.expression, labels)}")
+        for f in each.approximations:
+            about = latex_expression(f.expression, labels)
+            rows.append(rf"{latex_expression(Name(f.name), {})} &\approx {about}")
         q = [figure(q, 2 * SHORT_DIGITS) for q, _ in each.solutions]
         rows += [f"q &= {', '.join([*q, chr(92) + 'dots'])}"] if q else []
         for text, _, shown in each.kinds:
@@ -174,7 +187,9 @@ class LetterReader:
             return None
         formulas, kinds = tuple(self._formulas(c, of_factor)), tuple(self._kinds(kind, c))
         equation = without_minus(printed, self.turns.turning)
-        return SymbolicFactor(kind, equation, formulas, kinds) if formulas or kinds else silent
+        if formulas or kinds:
+            return SymbolicFactor(kind, equation, formulas, kinds)
+        return replace(silent, approximations=tuple(self._approximations(c, of_factor)))
 
     def _formulas(self, c: Sequence[fmpz_mpoly], roots: Sequence[Root]) -> Iterator[RootFormula]:
         """Yield the formulas of a factor whose values are those of its roots."""
@@ -215,6 +230,38 @@ class LetterReader:
             if length(expression) <= LONGEST and apart.is_finite() and apart.contains(0):
                 mine = roots if degree <= PAIR else [r for r in roots if r.size().overlaps(value)]
                 yield RootFormula(name, expression, value, unit, tuple(mine))
+
+    def _approximations(self, c: Sequence[fmpz_mpoly], roots: Sequence[Root]) -> Iterator[RootFormula]:
+        """Yield formulas of two modes far apart, each of three coefficients with their large terms."""
+        modes = sorted(
+            (r for r in roots if r.im > 0 and r.multiplicity == 1), key=lambda r: float(r.size().mid())
+        )
+        if len(c) - 1 != 2 * PAIR or len(modes) != PAIR:
+            return
+        for low, mode in zip((0, PAIR), modes, strict=True):
+            own = [self._leading(x) for x in c[low : low + PAIR + 1]]
+            if any(x.is_zero() for x in own):
+                return
+            first, last = (Factored.polynomial(self.tf.ring, x) for x in (own[0], own[-1]))
+            zeta = -mode.re / mode.size()
+            tried = (
+                ("omega", self.root(first / last), mode.size(), "rad/s"),
+                ("zeta", self._damping(own)[0], zeta, ""),
+            )
+            for name, printed, value, unit in tried:
+                expression = without_minus(printed, self.turns)
+                off = (self.value(expression) / value - 1).real
+                if length(expression) <= LONGEST and off.is_finite() and abs(off) < MOST_OFF:
+                    yield RootFormula(name, expression, value, unit, (mode,), off)
+
+    def _leading(self, coefficient: fmpz_mpoly) -> fmpz_mpoly:
+        """Return a coefficient without the terms that are small at the declared values."""
+        context, sizes = coefficient.context(), dict[tuple[int, ...], tuple[int, arb]]()
+        for m, x in coefficient.terms():
+            key, part = tuple(map(int, m)), context.from_dict({m: x})
+            sizes[key] = int(x), abs(self.value(self.printer.sum(part)))
+        most = max((size for _, size in sizes.values()), key=float, default=arb(0))
+        return context.from_dict({key: x for key, (x, size) in sizes.items() if not size < SMALL * most})
 
     def root(self, square: Factored, front: Factored | None = None) -> Expression:
         """Return a positive square root times what is in front; squares of unknown sign stay below it."""
@@ -294,11 +341,16 @@ def _even_kinds(ring: Ring, c: Sequence[fmpz_mpoly]) -> Sequence[tuple[str, Sequ
 
 def numbered(found: Sequence[SymbolicFactor], naming: Naming) -> Iterator[SymbolicFactor]:
     """Yield what is said with names that nothing else has: ``omega_p1`` is the lowest of several."""
-    every = [(f"{f.name}_{each.kind[0]}", f) for each in found for f in each.formulas]
+    every = [
+        (f"{f.name}_{each.kind[0]}", f) for each in found for f in (*each.formulas, *each.approximations)
+    ]
     every.sort(key=lambda item: float(item[1].roots[0].size().mid()))
     stems, names = [stem for stem, _ in every], dict[int, str]()
     for i, (stem, formula) in enumerate(every):
         count = stems[:i].count(stem) + 1 if stems.count(stem) > 1 else ""
         (names[id(formula)],) = naming.take(f"{stem}{count}")
     for each in found:
-        yield replace(each, formulas=tuple(replace(f, name=names[id(f)]) for f in each.formulas))
+        exact, about = (
+            tuple(replace(f, name=names[id(f)]) for f in of) for of in (each.formulas, each.approximations)
+        )
+        yield replace(each, formulas=exact, approximations=about)

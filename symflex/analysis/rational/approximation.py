@@ -484,7 +484,8 @@ def _said(approximation: RationalApproximation) -> list[str]:
 
 def _validity(approximation: RationalApproximation) -> list[str]:
     if approximation.is_exact:
-        return ["exact: nothing is left out of this rational function"]
+        exact = "exact: nothing is left out of this rational function"
+        return [exact, "its modes in symbols, also approximate ones: symflex roots --symbolic"]
     lines = []
     for percent in PERCENTS:
         limit = approximation.valid_to(percent / 100)

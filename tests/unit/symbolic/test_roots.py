@@ -1,6 +1,7 @@
 """Symbolic roots: formulas as books print them, kinds of roots against numpy, refusals."""
 
 import re
+from pathlib import Path
 from random import Random
 
 import numpy as np
@@ -11,6 +12,8 @@ from symflex import pipeline
 from symflex.expressions import format_expression
 from symflex.symbolic.frequency_equation import symbolic_roots
 from symflex.symbolic.roots import SymbolicFactor, symbolic_text
+
+CLASSICS = Path(__file__).parents[3] / "derivations" / "classics"
 
 
 def part(name: str, kind: str, ends: str, **values: str) -> str:
@@ -272,3 +275,29 @@ outputs.y = "u/(1 + K/f*s + s^2/(pi*f)^2)"
     said = [*factor.lines()]
     assert any(line.startswith("omega_p = pi*f") for line in said)
     assert any(" if 4 > pi^2*K^2" in line for line in said)
+
+
+def test_modes_of_a_quarter_car_have_the_approximate_formulas_of_books() -> None:
+    # Rajamani 2012, section 10.3: the body on both springs in series, the wheel on both side by side.
+    model = pipeline.load(CLASSICS / "quarter_car.toml")
+    tf = pipeline.derive_all(model, [("Z_body", "z_road")])[0]
+    bound = pipeline.bind(tf)
+    located = pipeline.roots(bound)
+    (factor, *_) = symbolic_roots(tf, bound, located)
+    about = {f.name: f for f in factor.approximations}
+    assert format_expression(about["omega_p1"].expression) == "sqrt(k_s*k_t/(m_s*(k_s + k_t)))"
+    assert format_expression(about["omega_p2"].expression) == "sqrt((k_s + k_t)/m_u)"
+    # What it says of their error is that of the certified roots: 300 kg, 40 kg, 20 kN/m, ... by numpy.
+    given = {p.name: float(p.value.nearly) for p in model.parameters if p.value is not None}
+    m_s, m_u, c_s, k_s, k_t = (given[name] for name in ("m_s", "m_u", "c_s", "k_s", "k_t"))
+    total = m_s + m_u
+    sizes = sorted(abs(np.roots([m_s * m_u, total * c_s, m_s * k_t + total * k_s, c_s * k_t, k_s * k_t])))
+    for name, size, formula in (
+        ("omega_p1", sizes[0], np.sqrt(k_s * k_t / (m_s * (k_s + k_t)))),
+        ("omega_p2", sizes[-1], np.sqrt((k_s + k_t) / m_u)),
+    ):
+        assert float(about[name].off.mid()) == pytest.approx(formula / size - 1, rel=1e-9)
+    assert any(
+        line.startswith("omega_p2 ~ sqrt((k_s + k_t)/m_u), 1.6 % above 69.6095 rad/s")
+        for line in factor.lines()
+    )
