@@ -14,12 +14,14 @@ async function started() {
     const { wheels } = JSON.parse(new TextDecoder().decode(await bytes("parts.json")));
     say("Loading Python");
     const packed = Promise.all(wheels.map(bytes));
-    const source = bytes("answers.py");
+    const sources = Promise.all(["answers.py", "arrays.py"].map(bytes));
     const { loadPyodide } = await import("./runtime/pyodide.mjs");
     const python = await loadPyodide({ indexURL: new URL("runtime/", import.meta.url).href });
     say("Unpacking symflex");
     for (const wheel of await packed) python.unpackArchive(wheel, "zip", { extractDir: "/package" });
-    python.FS.writeFile("/package/answers.py", await source);
+    const [answers, arrays] = await sources;
+    python.FS.writeFile("/package/answers.py", answers);
+    if (!wheels.some((name) => /^wheels\/numpy-/.test(name))) python.FS.writeFile("/package/numpy.py", arrays);
     say("Starting symflex");
     return python.runPython(`
 import sys

@@ -15,7 +15,6 @@ import pytest
 from symflex.cli import run
 from tests.house.repository import ROOT
 from tests.integration.chromium import Chromium
-from tests.integration.test_webassembly import LACKING
 
 RUNTIME = os.environ.get("SYMFLEX_WEBASSEMBLY")
 MORE = (
@@ -125,8 +124,7 @@ def test_formulas_roots_and_latex_are_those_of_the_program(browser, tmp_path, mo
     assert browser.run(f"symflex.ask('command', {asked}).then((x) => x.out)") == native(
         text, "derive", "--tf", pair
     )
-    if LACKING not in shown["roots"]["err"]:
-        assert shown["roots"]["out"] == native(text, "roots", "--tf", pair, "--json")
+    assert shown["roots"]["out"] == native(text, "roots", "--tf", pair, "--json")
     assert browser.run("document.querySelectorAll('#formula math').length") > 0
     # Half of it is a model with problems, or none.
     broken = text[: len(text) * 2 // 3]
