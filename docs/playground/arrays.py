@@ -2,7 +2,7 @@
 
 The page imports this file as ``numpy`` if no wheel of numpy lies beside it. Doubles in arrays guess where
 roots are, and measure the accuracy of code; proofs are in balls, and the same with either. What is missing
-here raises the error of a library that is not installed, so symflex says that it needs numpy.
+here raises the error of a library that is not installed, which commands report.
 
     array([1.0, 0.0]) / 0.0    [inf, nan], without a word
     x[1:][0] = 2.0             changes x, since a slice shows what it was cut from
