@@ -460,6 +460,7 @@ class StabilityOptions:
         "1 %", "--resolve", metavar="SHARE", **SHOWN, help="Share of a chart that may stay undecided."
     )
     peaks: bool = option(False, "--peaks", help="With beams or delays too: peaks of S and T, disk margin.")
+    is_all: bool = option(False, "--all", help="Print all boundaries, not only the first ten.")
     symbolic: bool = option(
         False,
         "--symbolic",

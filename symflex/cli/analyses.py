@@ -20,7 +20,7 @@ from symflex.cli.command import (
     names_in,
     refuse_ends,
 )
-from symflex.cli.reporting import answer, emit_json, note, say, show_error, terminal_width, write
+from symflex.cli.reporting import answer, emit_json, judge, note, show_error, terminal_width, write
 from symflex.errors import BudgetError, ModelError, refused
 from symflex.options import (
     ColocationOptions,
@@ -126,7 +126,7 @@ def roots(spec: Specification, given: RootsOptions) -> int:
         emit_json({**located.to_json_dict(), **{key: data for key, (data, _) in more.items()}})
     else:
         every = [roots_text(located, asked or SHORT_DIGITS, width), *(told for _, told in more.values())]
-        say("\n".join(every[given.format == "latex" :]))
+        judge("\n".join(every[given.format == "latex" :]))
     is_decided = (
         all(m.status != "undecided" for m in moved)
         and all(c.count is not None for c in clouds)
@@ -312,7 +312,7 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
             stable = stability_spread(model, given)
         else:
             stable = pipeline.stability(model, given)
-    answer(given.as_json, stable.to_json_dict, lambda: str(stable))
+    answer(given.as_json, stable.to_json_dict, lambda: stability_text(stable, is_whole=given.is_all))
     return 0 if stable.certified else 4
 
 
@@ -326,6 +326,16 @@ def _closed_loops(model: Model, given: StabilityOptions) -> int:
     found = pipeline.closed_loops(model, names_in(given.outputs), names_in(given.inputs))
     answer(given.as_json, found.to_json_dict, lambda: str(found))
     return 0 if found.certified else 4
+
+
+def stability_text(found: StabilityMap | StabilityChart | SpreadStability, *, is_whole: bool) -> str:
+    """Return a map of one parameter with its first boundaries or all of them, and what else is asked for."""
+    from symflex.loops import StabilityMap
+    from symflex.print.text import passages_text
+
+    if is_whole and isinstance(found, StabilityMap):
+        return passages_text(found.passages(None))
+    return str(found)
 
 
 @command_of("contact", ContactOptions, Ranged)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from functools import wraps
 from pathlib import Path
-from typing import ParamSpec, TextIO
+from typing import Final, ParamSpec, TextIO
 
 import click
 
@@ -58,6 +59,14 @@ def reporting(command: Callable[P, int | None]) -> Callable[P, int]:
             return UsageError.exit_code
 
     return run
+
+
+COLOUR_OF_WORD: Final = {
+    **dict.fromkeys(("certified", "stable", "PASSIVE"), "green"),
+    **dict.fromkeys(("NOT CERTIFIED", "not proved", "marginal"), "yellow"),
+    **dict.fromkeys(("unstable", "ACTIVE", "not minimum phase"), "red"),
+}
+VERDICT: Final = re.compile(rf"\b(?:{'|'.join(sorted(COLOUR_OF_WORD, key=len, reverse=True))})\b")
 
 
 def colours() -> bool:
@@ -151,7 +160,20 @@ def answer(is_json: bool, document: Callable[[], Mapping[str, object]], text: Ca
     if is_json:
         emit_json(document())
     else:
-        say(text())
+        judge(text())
+
+
+def judge(text: str) -> None:
+    """Print a text whose verdicts are in colour on a terminal."""
+    if sys.stdout.isatty() and "NO_COLOR" not in os.environ:
+        _print(coloured(printable(text, LAYOUT)))
+    else:
+        say(text)
+
+
+def coloured(text: str) -> str:
+    """Return a text with the words of verdicts in colour: what is proved, what is not, what is wrong."""
+    return VERDICT.sub(lambda found: click.style(found[0], fg=COLOUR_OF_WORD[found[0]], bold=True), text)
 
 
 def diagnostic_json(diagnostic: Diagnostic) -> dict[str, object]:

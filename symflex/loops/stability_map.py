@@ -26,6 +26,7 @@ SCHEMA = "symflex.stability/1"
 BITS = 128
 NOTHING_APART = PolesApart()
 NO_NOMINAL = "the gain has no value"
+MOST_BOUNDARIES = 10  # printed: as many as are seen at once; --all prints all
 BOXES = "boxes"  # the method for parameters that need not be gains
 BESIDE = "the value lies at a boundary, or outside of what was examined"
 
@@ -228,9 +229,12 @@ class StabilityMap(Printed):
         status = "certified" if self.certified else "not certified"
         return f"<StabilityMap of {self.gain}: {count} boundar{'y' if count == 1 else 'ies'}, {status}>"
 
-    def passages(self) -> Iterator[Passage]:
-        """Return stable ranges, boundaries, counts and margins, in 80 columns for up to 20 digits."""
-        return _passages(self.shown)
+    def passages(self, most: int | None = MOST_BOUNDARIES) -> Iterator[Passage]:
+        """Return stable ranges, boundaries, counts and margins, in 80 columns for up to 20 digits.
+
+        With ``most``, only that many boundaries and ranges from the lowest on; their number is said.
+        """
+        return _passages(self.shown, most)
 
     @property
     def shown(self) -> StabilityMap:
@@ -442,7 +446,7 @@ SHORT_DIGITS = 6
 SHOWN = 3  # frequencies of one boundary in print; the others are in the JSON
 
 
-def _passages(stability: StabilityMap) -> Iterator[Passage]:
+def _passages(stability: StabilityMap, most: int | None) -> Iterator[Passage]:
     unit = f" [{stability.unit}]" if stability.unit else ""
     lines = [f"{stability.gain}{unit}   {_status(stability)}", f"{INDENT}examined: {_examined(stability)}"]
     lines += [f"{INDENT}{'' if WITHOUT_END in x else 'not proved: '}{x}" for x in stability.reasons]
@@ -455,19 +459,22 @@ def _passages(stability: StabilityMap) -> Iterator[Passage]:
         return
     scope = "" if stability.is_complete else ", as far as poles were counted"
     scope = f", {stability.where_data_end}" if stability.where_data_end else scope
-    stable = [2 * INDENT + _between(interval, stability) for interval in stability.stable]
+    stable = _first([2 * INDENT + _between(interval, stability) for interval in stability.stable], most)
     word = "gain" if stability.is_gain else "value"
     yield Passage([f"{INDENT}stable for{scope}" + (":" if stable else f": no {word}"), *stable])
     marginal = [
         2 * INDENT + _between(i, stability) for i in stability.intervals if i.poles.word == "marginal"
     ]
     if marginal:
-        yield Passage([f"{INDENT}marginal for{scope}, with poles on the imaginary axis:", *marginal])
-    rows = [_boundary_row(stability, i) for i in range(len(stability.boundaries))]
+        shown = _first(marginal, most)
+        yield Passage([f"{INDENT}marginal for{scope}, with poles on the imaginary axis:", *shown])
+    count = len(stability.boundaries)
+    rows = [_boundary_row(stability, i) for i in range(count)[:most]]
     head = (stability.gain, "radius", "omega [rad/s]", "f [Hz]", "unstable poles")
-    yield Passage([f"{INDENT}boundaries: {len(rows) or 'none'}"], [head, *rows] if rows else ())
+    said = f"{count}, the first {len(rows)} shown; --all shows all" if len(rows) < count else count or "none"
+    yield Passage([f"{INDENT}boundaries: {said}"], [head, *rows] if rows else ())
     counted: list[tuple[str, ...]] = [("from", "to", "right half-plane", "on the axis")]
-    for i in stability.intervals:
+    for i in stability.intervals[:most]:
         ends = _end(i.low, "-inf", SHORT_DIGITS, i), _end(i.high, "inf", SHORT_DIGITS, i)
         counted.append((*ends, str(i.poles.right), str(i.poles.axis)))
     yield Passage([f"{INDENT}poles that are not in the left half-plane"], counted)
@@ -485,6 +492,12 @@ def _passages(stability: StabilityMap) -> Iterator[Passage]:
     if stability.boundaries:
         value = "gain" if stability.is_gain else "value"
         yield Passage([f"{INDENT}radius bounds the distance from the printed {value} to the boundary"])
+
+
+def _first(lines: Sequence[str], most: int | None) -> list[str]:
+    """Return the first lines, and how many follow."""
+    left = 0 if most is None else len(lines) - most
+    return [*lines[:most], f"{2 * INDENT}and {left} more"] if left > 0 else [*lines]
 
 
 def _beyond(stability: StabilityMap, data: DataEnd) -> Iterator[str]:

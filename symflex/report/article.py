@@ -233,16 +233,20 @@ def _run(run: Run) -> str:
         case Aside(text=text):
             return rf"\textit{{{escape_text(text)}}}"
         case PageLink(text=text, target=target):
-            shown = " ".join(map(_breakable, text.split(" ")))
+            shown = _breakable(text)
             return shown if target.startswith("#") else rf"\texttt{{{shown}}}"
         case _:
             assert_never(run)
 
 
 def _breakable(text: str) -> str:
-    """Return code that may be broken after what joins names, and anywhere in what is long."""
+    """Return code that may be broken at blanks, after what joins names, and anywhere in what is long."""
+    return " ".join(map(_breakable_word, text.split(" ")))
+
+
+def _breakable_word(word: str) -> str:
     pieces = [""]
-    for c in text:
+    for c in word:
         pieces[-1] += c
         if c in "/_.,=(" or len(pieces[-1]) >= _LONGEST_PIECE:
             pieces.append("")

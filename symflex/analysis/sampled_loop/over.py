@@ -13,7 +13,7 @@ from symflex.loops.chart import StabilityChart, find_chart
 from symflex.loops.find import gain_margins
 from symflex.loops.loop import pick_gain
 from symflex.loops.over import checked_names, find_intervals, limits_of, with_values
-from symflex.loops.stability_map import Margins, PoleCount, StabilityMap
+from symflex.loops.stability_map import MOST_BOUNDARIES, Margins, PoleCount, StabilityMap
 from symflex.model import Model
 from symflex.options import StabilityOptions, share_of
 from symflex.print.text import INDENT, Passage
@@ -52,9 +52,9 @@ class SampledStability(StabilityMap):
 
     sampled: str = ""  # which blocks take samples, how often
 
-    def passages(self) -> Iterator[Passage]:
+    def passages(self, most: int | None = MOST_BOUNDARIES) -> Iterator[Passage]:
         """Return the map in the words of z."""
-        yield from said_in_z(super().passages(), self.sampled)
+        yield from said_in_z(super().passages(most), self.sampled)
 
     def to_json_dict(self) -> dict[str, object]:
         """Return the map; its right half-plane is the outside of the unit circle."""

@@ -44,7 +44,7 @@ from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
 RISE = (0.1, 0.9)  # shares of the final value between which the rise time is counted
 SETTLED = 0.02  # share of the final value within which a response has settled
-TEXT_DIGITS, SHORT_DIGITS = 10, 4
+TEXT_DIGITS, SHORT_DIGITS, PERCENT_DIGITS = 10, 4, 4
 CLOSE = 1e-6  # share of the final value: a maximum that is no higher above it is no peak
 MOST_WORK = 200_000  # terms summed for one number, a second: a mode that rings a thousand times takes some
 ECHO_DERIVATIVES = 8  # terms of a piece's Taylor polynomial: six of a pole near 0 may cancel to 1e-13
@@ -112,7 +112,7 @@ class StepInfo:
             if ball.contains(0) and not ball.is_zero():
                 said = f"none above {float(ball.abs_upper()):.1g}"
             else:
-                said = figure(ball, digits)
+                said = figure(ball, min(digits, PERCENT_DIGITS) if of == "%" else digits)
             rows.append((name, said if of in ("", "1") else f"{said} {of}"))
         return rows
 

@@ -23,6 +23,7 @@ class Finding:
 
     verdict: Verdict  # ``holds``, ``holds with a condition``, ``does not hold`` or ``not examined``
     evidence: tuple[Run, ...]  # the numbers it rests on, or why nothing was examined
+    missing: tuple[str, ...] = ()  # models that it needs and the report does not include
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +61,8 @@ class Claim:
         needs = dict.fromkeys(model_of(name) for check in self.checks for name in check.of)
         missing = [name for name in needs if name not in models]
         if missing:
-            return Finding("not examined", (f"The report does not include {', '.join(missing)}.",))
+            why = f"The report does not include {', '.join(missing)}."
+            return Finding("not examined", (why,), tuple(missing))
         try:
             findings = [check.judge(models) for check in self.checks]
         except KeyError as lacking:
@@ -119,15 +121,22 @@ def judge_all(publication: Publication, models: Sequence[ModelFacts]) -> tuple[F
 
 
 def verdict_counts(findings: Sequence[Finding]) -> str:
-    """Say how many claims have each verdict."""
-    counts: Counter[str] = Counter(finding.verdict for finding in findings)
-    return ", ".join(f"{n} {many if n > 1 else v}" for v, (_, many) in VERDICTS.items() if (n := counts[v]))
+    """Say how many claims have each verdict, and how many are about other models."""
+    counts: Counter[str] = Counter(finding.verdict for finding in findings if not finding.missing)
+    others = sum(bool(finding.missing) for finding in findings)
+    elsewhere = (
+        [f"{others} {'are' if others > 1 else 'is'} about models that this report lacks"] if others else []
+    )
+    said = [f"{n} {many if n > 1 else v}" for v, (_, many) in VERDICTS.items() if (n := counts[v])]
+    return ", ".join([*said, *elsewhere])
 
 
 def claim_section(publication: Publication, findings: Sequence[Finding]) -> Section:
     """Return the claims with their verdicts and the evidence."""
     rows: list[tuple[Cell, ...]] = []
     for claim, finding in zip(publication.claims, findings, strict=True):
+        if finding.missing:
+            continue
         quote = f"“{claim.quote}”" if claim.is_quotation else claim.quote
         mark = Badge(finding.verdict, VERDICTS[finding.verdict][0])
         rows.append(((quote, "\n", Aside(claim.place)), (mark,), finding.evidence))

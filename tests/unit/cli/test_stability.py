@@ -138,3 +138,15 @@ def test_a_gain_that_is_none_is_an_error_of_the_specification(files):
         done = files("check", "wrong.toml")
         assert done.code == 3, (table, code)
         assert f"error[{code}" in done.err, (table, code)
+
+
+def test_the_first_boundaries_are_printed_or_all_of_them(shell):
+    (shell.folder / "loop.toml").write_text(LOOP, encoding="utf-8")
+    asked = ("stability", "loop.toml", "--gain", "K", "--range", "0", "200", "--digits", "6")
+    # Poles cross the axis at K = (1 + 4 k) pi, sixteen times up to 200.
+    first, every = shell(*asked).out, shell(*asked, "--all").out
+    assert "boundaries: 16, the first 10 shown; --all shows all" in first
+    assert "boundaries: 16\n" in every
+    for k in range(16):
+        assert (f"{(1 + 4 * k) * 3.141592653589793:.6g}"[:5] in first, k) == (k < 10, k)
+        assert f"{(1 + 4 * k) * 3.141592653589793:.6g}"[:5] in every

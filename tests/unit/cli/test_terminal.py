@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from symflex.cli import run
+from symflex.cli.reporting import coloured
 from tests.house.repository import ROOT
 
 # Erase the screen; set the title; the same introducers in one byte; turn the direction of writing.
@@ -119,3 +120,11 @@ def test_commands_print_through_what_escapes():
     modules = (ROOT / "symflex" / "cli").glob("*.py")
     direct = {p.name for p in modules if "click.echo" in p.read_text(encoding="utf-8")}
     assert direct <= {"__init__.py", "reporting.py"}
+
+
+def test_verdicts_are_green_yellow_or_red_on_a_terminal():
+    text = coloured("X/F   certified: 2 of 2 roots enclosed; unstable\nNOT CERTIFIED: instability")
+    assert text == (
+        "X/F   \x1b[32m\x1b[1mcertified\x1b[0m: 2 of 2 roots enclosed; \x1b[31m\x1b[1munstable\x1b[0m\n"
+        "\x1b[33m\x1b[1mNOT CERTIFIED\x1b[0m: instability"
+    )

@@ -7,6 +7,7 @@ from inspect import signature
 import pytest
 
 from symflex.errors import SpecError
+from symflex.report.claims.claim import claim_section, judge_all
 from symflex.report.claims.predicates import PREDICATES
 from symflex.report.claims.read import read_claims
 from symflex.report.facts import (
@@ -68,6 +69,16 @@ def test_a_claim_is_a_quotation_with_checks(tmp_path):
         "It moves.",
         True,
     )
+
+
+def test_claims_about_models_that_are_not_there_are_counted_and_not_listed(tmp_path):
+    checks = 'checks = [{ is = "counts", of = "cart: X/F", zeros = 0, poles = 2 }]\n'
+    other = CLAIM.replace("one", "two").replace("It moves", "It stays") + checks.replace("cart", "crane")
+    claims = read(tmp_path, HEAD + CLAIM + checks + other)
+    findings = judge_all(claims, [ModelFacts("cart", source="Nobody 2001", functions=(function(),))])
+    lead, table = claim_section(claims, findings).blocks
+    assert "1 is about models that this report lacks" in str(lead)
+    assert "It moves." in str(table) and "It stays." not in str(table)
 
 
 def test_what_is_wrong_is_said_with_its_place(tmp_path):

@@ -18,7 +18,7 @@ from symflex.errors import SpecError, UsageError
 from symflex.figures.files import inline_svg
 from symflex.report.article import report_article
 from symflex.report.comparison import COLUMNS, LOOP_COLUMNS, comparison_section
-from symflex.report.document import Mathematics, Paragraph, Section
+from symflex.report.document import Code, Mathematics, Paragraph, Section
 from symflex.report.facts import facts_of
 from symflex.report.page import report_page
 from symflex.report.report import (
@@ -354,3 +354,9 @@ def test_a_sentence_with_long_mathematics_scrolls_and_the_page_does_not():
     page = report_page(Report("", "", "", sections, {}, (), 0))
     assert '<p class="scroll" tabindex="0">The factor <math>' in page
     assert "<p>Short.</p>" in page
+
+
+def test_code_in_an_article_keeps_its_blanks():
+    section = Section("A", (Paragraph((Code("imaginary axis, as here"),)),), "a")
+    article = report_article(Report("", "", "", (section,), {}, (), 0))
+    assert re.search(r"axis,(\{\})? as here", article)
