@@ -174,7 +174,14 @@ def _signed(form: PrintedForm, signs: SumSigns, model: Model) -> PrintedForm:
     num, den = (num, den) if form.name in SCALED else _decimals(model, num, den)
     is_negative = isinstance(num, Negative) is not isinstance(den, Negative)
     num, den = (e.operand if isinstance(e, Negative) else e for e in (num, den))
+    if is_negative and isinstance(den, Sum) and not _holds_power_of_s(den) and (turned := _difference(den)):
+        den, is_negative = turned, False  # 1/(1 - R*exp(-T*s))
     return replace(form, num=signs.absorbed(num) if is_negative else num, den=den, where=where)
+
+
+def _holds_power_of_s(total: Sum) -> bool:
+    """Tell whether s is in a sum outside of functions."""
+    return S in names(rebuilt(total, lambda part: ONE if isinstance(part, Call) else part))
 
 
 @dataclass(frozen=True, eq=False)
@@ -298,7 +305,7 @@ class SumSigns:
             return Negative(as_written)
         below, whole = 2 * sum(isinstance(t, Negative) for t in terms), Sum(tuple(terms))
         has_number = any(isinstance(t, Number) for t in (*terms, *turned))
-        has_s = S in names(rebuilt(whole, lambda part: number(1) if isinstance(part, Call) else part))
+        has_s = _holds_power_of_s(whole)
         may_turn = below > len(terms) and (has_s or not has_number)
         may_turn |= not has_s and below == len(terms) and (self.turns or has_number)
         sign = self._sign(whole) if may_turn else 0

@@ -1016,3 +1016,15 @@ def test_squares_less_one_are_squares_of_the_other_function(printed, expected):
         'symflex = 1\nparameters = { a = {}, b = {}, q = {} }\ninputs.u = {}\noutputs.y = "u/(s + a)"'
     )
     assert format_expression(SumSigns.of(model).oriented(parse(Text.alone("t", printed)))) == expected
+
+
+def test_a_function_of_delays_alone_has_no_minus_over_minus():
+    # The echoes of a pipe: u + R*exp(-2*s*l/c)*y = y.
+    text = """symflex = 1
+parameters = { R = {}, T = {} }
+inputs.u = {}
+outputs.y = "x"
+signals.x = "u + R*exp(-T*s)*x"
+"""
+    form = print_form(tf_of(text, "y", "u"))
+    assert (format_expression(form.num), format_expression(form.den)) == ("1", "1 - R*exp(-T*s)")
