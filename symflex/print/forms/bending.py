@@ -70,6 +70,40 @@ def in_beta(tf: TransferFunction) -> TransferFunction | None:
     return economical(replace(tf, reduced=normal.reduce_factored(image), kernels=normal.table, parts=None))
 
 
+def krylov_of_beta(
+    tf: TransferFunction, change: Invariants, value: Factored
+) -> tuple[TransferFunction, Invariants, Factored]:
+    """Return a value in Krylov-Duncan functions as one of beta, with its change, and 1 as such a function."""
+    bending = [d for d in change.table.dispersions if d.kind == "bending"]
+    names = {d.wavenumbers[0]: f"{BETA}[{i}]" for i, d in enumerate(bending)}
+    base, ring = (Ring(tuple(names.get(n, n) for n in r.names)) for r in (tf.ratio.ring, change.ring))
+    waves = [change.ring.index[w] for w in names]
+
+    def renamed(factor: fmpz_mpoly) -> Factored:
+        terms = [([int(e) for e in m], int(c)) for m, c in factor.terms()]
+        values = {tuple(m): c * FOURTH ** (sum(m[w] for w in waves) // 4) for m, c in terms}
+        below = max(x.denominator for x in values.values())
+        whole = ring.context.from_dict({m: int(x * below) for m, x in values.items()})
+        return Factored.polynomial(ring, whole) / Factored.number(ring, below)
+
+    # A factor that is a power of mu is one of its fourth power.
+    made = Factored.number(ring, value.unit)
+    for factor, n in value.factors:
+        is_wave = any(factor == change.ring.generator(w) for w in names)
+        made = made * renamed(factor) ** n * (FOURTH ** (n // 4) if is_wave else 1)
+    laws = {d: _law(d, names[d.wavenumbers[0]]) if d in bending else d for d in tf.kernels.dispersions}
+    plain = KernelTable(
+        tuple(laws.values()),
+        tuple(
+            replace(k, dispersion=laws[k.dispersion], wavenumber=names.get(k.wavenumber, k.wavenumber))
+            for k in change.table.kernels
+        ),
+    )
+    table = plain.embedded([(v, v.over(base)) for v in plain.values])
+    own = replace(tf, reduced=Factored.number(base, 1), kernels=table, parts=None)
+    return own, Invariants(base, table), made
+
+
 def _law(law: Dispersion, name: str) -> Dispersion:
     """Return a law whose ``4 mu^4 = c_0`` is ``beta^4 = -c_0`` of a beam."""
     return replace(law, wavenumbers=(name,), characteristic=tuple(c * -4 for c in law.characteristic))

@@ -9,6 +9,7 @@ from symflex.algebra import Factored
 from symflex.expressions import Expression, Name, negative, number, power, product_of, quotient, sum_of
 from symflex.print.forms.arrange import Arranger, shortest_sides
 from symflex.print.forms.arranged import Arranged
+from symflex.print.forms.bending import krylov_of_beta
 from symflex.print.forms.invariants import Invariants, in_krylov_functions, krylov_name
 from symflex.print.forms.kept import KeptDefinitions
 from symflex.print.forms.naming import Naming
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 def krylov_draft(tf: TransferFunction, arranged: Arranged) -> BegunForm | None:
     """Begin the form in ``K_0, K_1, ...`` of the lengths, solutions along x for unit initial data.
 
-    For a beam ``K_0 = cosh(q)*cos(q)``, ``K_1 = (cosh(q)*sin(q) + sinh(q)*cos(q))/(2*mu)``, ...; where
+    For a beam ``K_0 = (cosh(q) + cos(q))/2``, ``K_1 = (sinh(q) + sin(q))/(2*beta)``, ...; where
     exponents have no formula, the solutions and their derivatives at the ends stand as ``h(l)``, ``h'(l)``.
     """
     if not tf.has_formula:
@@ -32,8 +33,8 @@ def krylov_draft(tf: TransferFunction, arranged: Arranged) -> BegunForm | None:
     converted = in_krylov_functions(tf.ratio.ring, tf.kernels, tf.ratio)
     if converted is None:
         return None
-    change, value = converted
-    return BegunForm(terms_of(value), partial(_krylov, tf, change, value, arranged))
+    own, change, value = krylov_of_beta(tf, *converted)
+    return BegunForm(terms_of(value), partial(_krylov, own, change, value, arranged))
 
 
 def _krylov(tf: TransferFunction, change: Invariants, value: Factored, arranged: Arranged) -> PrintedForm:
@@ -81,13 +82,13 @@ def _functions(group: tuple[Angle, ...], symbols: dict[str, Expression]) -> list
         case "wave":
             return [first["cosh"], quotient(first["sinh"], wave)]
         case "bending":
-            growing = product_of([first["cosh"], first["sin"]])
-            turning = product_of([first["sinh"], first["cos"]])
+            pairs = [("cosh", "cos"), ("sinh", "sin")]
             return [
-                product_of([first["cosh"], first["cos"]]),
-                quotient(sum_of([growing, turning]), product_of([number(2), wave])),
-                quotient(product_of([first["sinh"], first["sin"]]), product_of([number(2), power(wave, 2)])),
-                quotient(sum_of([growing, negative(turning)]), product_of([number(4), power(wave, 3)])),
+                quotient(
+                    sum_of([first[grows], first[turns] if order < len(pairs) else negative(first[turns])]),
+                    product_of([number(2), power(wave, order)]),
+                )
+                for order, (grows, turns) in enumerate([*pairs, *pairs])
             ]
     second = {f: symbols[g] for f, g in group[1].kernels.items()}
     x, y = wave, symbols[group[1].wavenumber]

@@ -171,9 +171,9 @@ SHOWN = {
     "which stays whole where the numerator needs half the length": (
         ("clamped_free", "W_mid/F", "frequency"), None, "2*E*I*beta^3*(cosh(beta*l)*cos(beta*l) + 1)",
     ),
-    # K_0 of l is the numerator: the tip and the slider move alike where cos cosh = 0.
+    # Krylov 1931, by hand: K_0 = (cosh + cos)/2, and cosh*sin + sinh*cos = 2*beta*(K_0*K_1 - beta^4*K_2*K_3).
     "Krylov-Duncan functions of the free beam": (
-        ("sliding_free_beam", "V_tip/F", "krylov"), "K_0", "rho*A*s*(4*alpha^4*K_2*K_3 + K_0*K_1)",
+        ("sliding_free_beam", "V_tip/F", "krylov"), "-K_0", "rho*A*s*(beta^4*K_2*K_3 - K_0*K_1)",
     ),
     # Rao, Vibration of Continuous Systems, chapter 9: the stiffness E A gamma beside the inertia m s^2.
     "a rod with a mass has its stiffness in the characteristic equation": (
