@@ -2,9 +2,10 @@
 
 Input: a table with wrong entries, and the text of its model. Output: a sentence, empty without such a slip.
 
-Tried in this order: a slip of the pen in each wrong entry, a factor common to all entries, another value of a
-parameter, and one change of the specification (a support, an element, a sign, a term, an exponent). A change
-counts only if every entry is right with it.
+Tried in this order: a slip of the pen in each wrong entry, a factor common to all entries, values exchanged,
+another number, and one change of the specification (a support, a condition, an element, a sign, a term, an
+exponent). A change counts only if every entry is right with it, and a number only if the entries say more
+digits than it has.
 
 Example: frequencies of a cantilever are printed as 124.26, 402.67 and 840.15 Hz. They are wrong, and right if
 its wall is a pin; no other change makes them so.
@@ -18,16 +19,36 @@ from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
 from functools import partial
-from itertools import chain, combinations, islice, pairwise
+from itertools import chain, combinations, islice
 from typing import Final
 
 from flint import arb
 
-from symflex.audit.tables import EntryAudit, TableAudit, judge_table, last_place, significant, verdict_on
+from symflex.audit.literals import (
+    FACTORS,
+    LATE,
+    LISTED,
+    SECTIONS,
+    WrittenNumber,
+    literals_of,
+    refits,
+    respelled,
+    written,
+)
+from symflex.audit.tables import (
+    EntryAudit,
+    TableAudit,
+    judge_table,
+    last_place,
+    printed_values,
+    significant,
+    verdict_on,
+)
 from symflex.balls import ball, precision
 from symflex.budget import Budget, spend
 from symflex.errors import BudgetError, Source, SymflexError
 from symflex.expressions import (
+    FUNCTIONS,
     Call,
     Expression,
     Power,
@@ -46,7 +67,7 @@ from symflex.expressions import (
     sum_of,
 )
 from symflex.model import ExactValue, Model, PrintedTable
-from symflex.model.spec import ArrayValue, StringValue, TableValue, Value
+from symflex.model.spec import StringValue, TableValue
 from symflex.model.spec.parse import parse as parse_specification
 
 MOST_CHANGES: Final = 400  # changes of a model that are tried for one table
@@ -54,49 +75,11 @@ SEARCHED: Final = 40.0  # seconds after which no more changes are tried
 OVER: Final = ("SF504", "SF506")  # codes of a budget that is used up
 MOST_OF_ONE: Final = 40  # changes of one expression
 ENOUGH_DIGITS: Final = 6  # printed digits of wrong entries in all, below which a match says little
+MARGIN: Final = 3  # digits of evidence beyond those of a number that is no slip of the pen
 SHOWN: Final = 3  # explanations that are named
-LATE: Final = 20  # units of the last digit by which an entry is off that was computed with too few
-FACTORS: Final[Mapping[str, tuple[Fraction, int, bool]]] = {
-    "2 pi times": (Fraction(2), 1, False),
-    "1/(2 pi) times": (Fraction(1, 2), -1, False),
-    "twice": (Fraction(2), 0, False),
-    "half": (Fraction(1, 2), 0, False),
-    "pi times": (Fraction(1), 1, False),
-    "1/pi times": (Fraction(1), -1, False),
-    "4 times": (Fraction(4), 0, False),
-    "1/4 of": (Fraction(1, 4), 0, False),
-    "10 times": (Fraction(10), 0, False),
-    "1/10 of": (Fraction(1, 10), 0, False),
-    "1000 times": (Fraction(1000), 0, False),
-    "1/1000 of": (Fraction(1, 1000), 0, False),
-    "minus": (Fraction(-1), 0, False),
-    "8 times": (Fraction(8), 0, False),
-    "1/8 of": (Fraction(1, 8), 0, False),
-    "16 times": (Fraction(16), 0, False),
-    "1/16 of": (Fraction(1, 16), 0, False),
-    "60 times": (Fraction(60), 0, False),
-    "60/(2 pi) times": (Fraction(30), -1, False),
-    "180/pi times": (Fraction(180), -1, False),
-    "sqrt(2) times": (Fraction(2), 0, True),
-    "1/sqrt(2) times": (Fraction(1, 2), 0, True),
-    "sqrt(3) times": (Fraction(3), 0, True),
-}
-"""What a unit, a diameter for a radius or a decimal point makes of a value: rational, power of pi, and
-whether its square root is meant."""
 SUPPORTS: Final = ("fixed", "pin", "slider")
-WRITTEN: Final = (
-    "definitions",
-    "elements",
-    "signals",
-    "equations",
-    "fields",
-    "energy",
-    "blocks",
-    "parameters",
-)
-"""Sections whose expressions are changed."""
 EXPONENTS: Final = (1, 2, 3, 4)
-DIGITS: Final = "0123456789"
+ORDERS: Final = (0, 1, 2, 3)  # of derivatives in conditions
 FEWEST: Final = 2  # entries that share a factor
 BITS: Final = 128
 EXCHANGED: Final = {"sin": "cos", "cos": "sin", "sinh": "cosh", "cosh": "sinh"}
@@ -110,6 +93,8 @@ class _Change:
 
     said: str
     made: Callable[[], tuple[Model, PrintedTable]]
+    digits: int = LISTED  # how many digits of evidence it takes to choose it
+    literal: WrittenNumber | None = None  # the number that it changes, where that is all
 
 
 def audit_tables(model: Model, source: Source, load: Callable[[Source], Model]) -> tuple[TableAudit, ...]:
@@ -127,17 +112,23 @@ def explained(found: TableAudit, model: Model, source: Source, load: Callable[[S
     if pen := _pen(found):
         return replace(found, slip=pen)
     said = [factor] if (factor := _common_factor(found)) else []
+    text = _Text(found, source, load)
+    fitting: list[_Change] = []
     if sum(significant(e.printed) for e in _wrong(found) if e.printed) >= ENOUGH_DIGITS:
-        offered = chain(_of_values(model, found.table), _of_text(found.table, source, load))
-        fitting = (c.said for c in islice(offered, MOST_CHANGES) if _explains(c, found))
-        with (
-            suppress(BudgetError),
-            Budget(seconds=SEARCHED).entered(),
-        ):  # a slip found before that is still named
-            said += islice(fitting, SHOWN)
+        offered = chain(_of_values(model, found.table), text.exchanges(), text.refits(), text.rewritings())
+        evidence = _evidence(found)
+        with suppress(BudgetError), Budget(seconds=SEARCHED).entered():  # what is found before is named
+            for change in islice(offered, MOST_CHANGES):
+                is_likely = change.digits <= LISTED or change.digits + MARGIN <= evidence
+                is_named = change.literal is not None and change.literal in {c.literal for c in fitting}
+                if is_likely and not is_named and _explains(change, found):
+                    fitting.append(change)
+                if sum(each.digits <= LISTED for each in fitting) == SHOWN:
+                    break
+    least = min((each.digits for each in fitting), default=0)
+    said += [each.said for each in fitting if each.digits <= max(least, LISTED)][:SHOWN]
     which = "the entry is" if found.count == 1 else f"all {found.count} entries are"
-    evidence = f": with this {which} right" if said else ""
-    return replace(found, slip="; or ".join(said) + evidence)
+    return replace(found, slip="; or ".join(said) + (f": with this {which} right" if said else ""))
 
 
 def explained_by_print(found: TableAudit) -> TableAudit:
@@ -148,6 +139,28 @@ def explained_by_print(found: TableAudit) -> TableAudit:
 
 def _wrong(found: TableAudit) -> list[EntryAudit]:
     return [e for e in found.entries if e.verdict in ("wrong", "extra", "missing")]
+
+
+def _distance(entry: EntryAudit) -> float:
+    """Return how far an entry is off, in units of its last digit."""
+    if entry.value is None:
+        return 0.0
+    return float(abs(Fraction(Decimal(entry.printed)) - entry.value) / last_place(entry.printed))
+
+
+def _evidence(found: TableAudit) -> int:
+    """Return how many digits the wrong entries say: one entry's, if all are off by one factor."""
+    ratios = [
+        (float(e.printed) / float(e.value), significant(e.printed))
+        for e in _wrong(found)
+        if e.value and e.printed
+    ]
+    digits = [digits for _, digits in ratios]
+    if not digits:
+        return 0
+    first, apart = ratios[0][0], 10.0 ** (1 - min(digits))
+    is_one = all(abs(ratio / first - 1) <= 2 * apart for ratio, _ in ratios)
+    return max(digits) if is_one else sum(digits)
 
 
 def _common_factor(found: TableAudit) -> str:
@@ -168,11 +181,13 @@ def _common_factor(found: TableAudit) -> str:
 def _pen(found: TableAudit) -> str:
     """Return the slips of the pen in all wrong entries, nothing if one has none."""
     said, slips = [], 0
+    if 1 < found.count < 2 * len(_wrong(found)):  # the pen does not slip more often than not
+        return ""
     for entry in _wrong(found):
         if entry.value is None:
             return ""
         off = abs(Fraction(Decimal(entry.printed)) - entry.value) / last_place(entry.printed)
-        text = _respelled(entry.printed, entry.value)
+        text = respelled(entry.printed, entry.value)
         slips += text is not None
         if text is not None:
             said.append(f"{entry.printed} in row {entry.row} is {text[1]} with {text[0]}")
@@ -181,31 +196,6 @@ def _pen(found: TableAudit) -> str:
         else:
             return ""
     return "; ".join(said) if slips else ""
-
-
-def _respelled(printed: str, value: Fraction) -> tuple[str, str] | None:
-    """Return what happened to a decimal on its way to the page, and what it was; None if nothing simple did.
-
-    >>> _respelled("3.15601", Fraction("3.5160152685")), _respelled("1111", Fraction("1011.2"))
-    (('two digits exchanged', '3.51601'), ('a mistyped digit', '1011'))
-    """
-    places = [i for i, c in enumerate(printed) if c.isdigit()]
-    offered: list[tuple[str, str]] = []
-    for i, j in pairwise(places):
-        swapped = [*printed]
-        swapped[i], swapped[j] = printed[j], printed[i]
-        offered.append(("two digits exchanged", "".join(swapped)))
-    early = places[: -1 if abs(Fraction(Decimal(printed)) - value) > LATE * last_place(printed) else -2]
-    offered += [("one digit too many", printed[:i] + printed[i + 1 :]) for i in early]
-    offered += [("a mistyped digit", printed[:i] + d + printed[i + 1 :]) for i in early for d in DIGITS]
-    offered += [("a digit left out", printed[:i] + d + printed[i:]) for i in places[1:-1] for d in DIGITS]
-    plain = "" if "e" in printed.lower() else printed.replace(".", "")
-    moved = [f"{plain[:i]}.{plain[i:]}" for i in range(1, len(plain))]
-    offered += [("a decimal point at another place", text) for text in moved]
-    for what, text in offered:
-        if text != printed and text.strip("-+.") and verdict_on(text, ball(value)) in ("right", "rounded"):
-            return what, text
-    return None
 
 
 def _explains(change: _Change, found: TableAudit) -> bool:
@@ -222,6 +212,8 @@ def _explains(change: _Change, found: TableAudit) -> bool:
     except SymflexError as error:
         if error.diagnostics[0].code in OVER:
             raise
+        return False
+    except ZeroDivisionError:  # a model that divides by what is left out
         return False
 
 
@@ -243,70 +235,108 @@ def _of_values(model: Model, table: PrintedTable) -> Iterator[_Change]:
         if known[one] != known[other] or any({one, other} & dict(r.values).keys() for r in table.rows):
             exchange = partial(_exchanged, one=one, other=other)
             yield _Change(f"{one} and {other} are exchanged", partial(changed, exchange))
-    for said, (factor, pi_power, is_root) in FACTORS.items():
-        for name, value in known.items():
-            if value.rational and not is_root:
-                times = partial(_times, name=name, factor=factor, pi_power=pi_power)
-                yield _Change(f"{name} is {said} its value", partial(changed, times))
     for name, value in known.items():
-        if value.rational:
-            nothing = partial(_times, name=name, factor=Fraction(0), pi_power=0)
-            yield _Change(f"{name} is left out", partial(changed, nothing))
+        for said, factor in ((f"{name} is minus its value", -1), (f"{name} is left out", 0)):
+            if value.rational:
+                yield _Change(said, partial(changed, partial(_times, name=name, factor=factor)))
 
 
 def _exchanged(values: Values, one: str, other: str) -> Values:
     return {**values, one: values[other], other: values[one]}
 
 
-def _times(values: Values, name: str, factor: Fraction, pi_power: int) -> Values:
+def _times(values: Values, name: str, factor: int) -> Values:
     value = values[name]
-    return {**values, name: ExactValue(value.rational * factor, value.pi_power + pi_power)}
+    return {**values, name: replace(value, rational=value.rational * factor)}
 
 
-def _of_text(table: PrintedTable, source: Source, load: Callable[[Source], Model]) -> Iterator[_Change]:
-    """Yield one support, element or expression written differently."""
-    spec = parse_specification(source)
-    sections = {s.key: s.value for s in spec.root.entries if isinstance(s.value, TableValue)}
-    elements = sections["elements"].entries if "elements" in sections else ()
+class _Text:
+    """The text of a model, to be written with one slip."""
 
-    def made(start: int, end: int, new: str) -> tuple[Model, PrintedTable]:
-        text = f"{source.text[:start]}{new}{source.text[end:]}"
-        changed = load(replace(source, text=text))
-        return changed, next(t for t in changed.tables if t.name == table.name)
+    def __init__(self, found: TableAudit, source: Source, load: Callable[[Source], Model]) -> None:
+        self.found, self.source, self.load = found, source, load
+        spec = parse_specification(source)
+        self.sections = {s.key: s.value for s in spec.root.entries if isinstance(s.value, TableValue)}
 
-    for entry in elements:
-        kind = entry.value.get("type") if isinstance(entry.value, TableValue) else None
-        if kind is None or not isinstance(kind.value, StringValue):
-            continue
-        written, span = kind.value.text.value, kind.value.text.span
-        for other in SUPPORTS if written in SUPPORTS else ():
-            if other != written:
-                said = f"{entry.key} is a {other} and no {written}"
-                yield _Change(said, partial(made, span.start, span.end, other))
-        ends = entry.key_span.start, entry.value.span.end
-        yield _Change(f"{entry.key} ({written}) is left out", partial(made, *ends, ""))
-    for section in WRITTEN:
-        for path, value in _strings(section, sections.get(section)):
-            old = value.text.value
-            for new in islice(_rewritten(value), MOST_OF_ONE):
-                place = value.text.span
-                yield _Change(f"{path} is {new} and not {old}", partial(made, place.start, place.end, new))
+    def made(self, *edits: tuple[int, int, str]) -> tuple[Model, PrintedTable]:
+        """Return the model and the table with other texts from offset to offset."""
+        text = self.source.text
+        for start, end, new in sorted(edits, reverse=True):
+            text = f"{text[:start]}{new}{text[end:]}"
+        changed = self.load(replace(self.source, text=text))
+        return changed, next(t for t in changed.tables if t.name == self.found.table.name)
+
+    def changed(self, said: str, *edits: tuple[int, int, str]) -> _Change:
+        """Return a change of the text."""
+        return _Change(said, partial(self.made, *edits))
+
+    def exchanges(self) -> Iterator[_Change]:
+        """Yield numbers of elements of one key, or of rows, that are exchanged."""
+        alone = [n for n in literals_of(self.sections, self.found.table) if n.is_alone]
+        alike: dict[str, list[WrittenNumber]] = {}
+        for each in alone:
+            if " of " in each.path or each.row:
+                alike.setdefault(each.path.split()[0], []).append(each)
+        for one, other in chain.from_iterable(combinations(each, 2) for each in alike.values()):
+            if one.whole != other.whole:
+                pairs = (one, other), (other, one)
+                edits = [(n.place, n.place + len(n.whole), by.whole) for n, by in pairs]
+                yield self.changed(f"{one.path} and {other.path} are exchanged", *edits)
+
+    def refits(self) -> Iterator[_Change]:
+        """Yield other numbers with which one wrong entry is right."""
+        prints = self.found.prints
+        far = {e.row: e for e in sorted(_wrong(self.found), key=_distance) if e.value is not None}
+        if prints is None or not far:
+            return
+        for literal in literals_of(self.sections, self.found.table):
+            entry = far.get(literal.row or min(far))
+            if entry is None or entry.column is None:
+                continue
+
+            def at(
+                number: float, literal: WrittenNumber = literal, entry: EntryAudit = entry
+            ) -> float | None:
+                try:
+                    model, table = self.made(_edit(literal, repr(number)))
+                    only = replace(table, rows=(table.rows[entry.row - 1],))
+                    values = printed_values(model, only, prints)
+                except SymflexError as error:
+                    if error.diagnostics[0].code in OVER:
+                        raise
+                    return None
+                column = (entry.column or 1) - 1
+                return values[column] if column < len(values) else None
+
+            for refit in refits(literal, entry.printed, at, float(entry.value or 0)):
+                change = self.changed(refit.said, _edit(literal, refit.text))
+                yield replace(change, digits=refit.digits, literal=literal)
+
+    def rewritings(self) -> Iterator[_Change]:
+        """Yield one support, element or expression written differently."""
+        elements = self.sections["elements"].entries if "elements" in self.sections else ()
+        for entry in elements:
+            kind = entry.value.get("type") if isinstance(entry.value, TableValue) else None
+            if kind is None or not isinstance(kind.value, StringValue):
+                continue
+            named, span = kind.value.text.value, kind.value.text.span
+            for other in SUPPORTS if named in SUPPORTS else ():
+                if other != named:
+                    said = f"{entry.key} is a {other} and no {named}"
+                    yield self.changed(said, (span.start, span.end, other))
+            whole = entry.key_span.start, entry.value.span.end, ""
+            yield self.changed(f"{entry.key} ({named}) is left out", whole)
+        for section in SECTIONS:
+            for path, value in written(section, self.sections.get(section)):
+                if isinstance(value, StringValue):
+                    place, old = value.text.span, value.text.value
+                    for new in islice(_rewritten(value), MOST_OF_ONE):
+                        yield self.changed(f"{path} is {new} and not {old}", (place.start, place.end, new))
 
 
-def _strings(path: str, value: Value | None) -> Iterator[tuple[str, StringValue]]:
-    """Yield the strings below a section, with what they belong to."""
-    match value:
-        case StringValue() if value.text.verbatim:
-            yield path, value
-        case TableValue():
-            for entry in value.entries:
-                if entry.key not in ("type", "at", "between", "doc", "latex", "unit", "assume", "from", "to"):
-                    yield from _strings(
-                        entry.key if path in WRITTEN else f"{entry.key} of {path}", entry.value
-                    )
-        case ArrayValue():
-            for item in value.items:
-                yield from _strings(path, item)
+def _edit(literal: WrittenNumber, number: str) -> tuple[int, int, str]:
+    start = literal.place + literal.start
+    return start, start + len(literal.text), number
 
 
 def _rewritten(value: StringValue) -> Iterator[str]:
@@ -341,6 +371,10 @@ def _mistyped(expression: Expression) -> Iterator[Expression]:
                         yield replace_node(expression, part, power(base, other))
             case Call(name, argument) if name in EXCHANGED:
                 yield replace_node(expression, part, Call(EXCHANGED[name], argument))
+            case Call(name, argument, order) if name not in FUNCTIONS:  # a condition at a point of a field
+                for other in ORDERS:
+                    if other != order:
+                        yield replace_node(expression, part, Call(name, argument, other))
             case Product(factors):
                 for factor in factors:
                     left = product_of([f for f in factors if f is not factor])

@@ -160,6 +160,11 @@ def judge_table(model: Model, table: PrintedTable) -> TableAudit:
     return _joined(table, each)
 
 
+def printed_values(model: Model, table: PrintedTable, prints: Expression) -> list[float]:
+    """Return what the first row of a table would print of the roots that every table lists."""
+    return [float(value.mid()) for value, _ in _located_rows(model, table)[0].nonzero(prints)]
+
+
 def _located_rows(model: Model, table: PrintedTable) -> list[_RowOfRoots]:
     """Return the rows of a table with the roots of a model; rows with the same values share them."""
     digits = max(map(significant, (e for row in table.rows for e in row.entries if e != GAP)), default=4)

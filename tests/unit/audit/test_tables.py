@@ -144,6 +144,67 @@ def test_a_spring_left_out_is_named():
     assert "k_1 is left out" in found.slip
 
 
+NUMBERS = """symflex = 1
+[elements]
+a = { type = "mass", at = "x", m = "1 kg" }
+b = { type = "mass", at = "y", m = 3 }
+s = { type = "spring", between = ["ground", "x"], k = "4 kN/m" }
+t = { type = "spring", between = ["x", "y"], k = "7 kN/m" }
+[inputs]
+F = { force = "y" }
+[outputs]
+X = "x"
+"""
+
+
+@pytest.mark.parametrize(
+    ("model", "values", "slip"),
+    [
+        # m_1 m_2 w^2 - (m_2 (k_1 + k_2) + m_1 k_2) w + k_1 k_2 = 0 with other numbers, solved with numpy.
+        (CHAIN, ["25.6306", "109.893"], "k_1 is 3.4 kN/m and not 4 kN/m"),
+        (CHAIN, ["30.1522", "184.456"], "k_2 is 23.2 kN/m and not 7 kN/m"),
+        (NUMBERS, ["26.9707", "106.090"], "m of a is 1.14 kg and not 1 kg"),
+        (NUMBERS, ["17.1880", "107.509"], "m of b is 8.2 and not 3"),
+        (NUMBERS, ["28.4596", "107.347"], "k of s and k of t are exchanged"),
+        (NUMBERS, ["31.1214", "310.427"], "k of t is 10 times its value"),
+    ],
+    ids=["digits", "another value", "in an element", "bare", "exchanged", "a factor"],
+)
+def test_another_number_is_named(model, values, slip):
+    found = judged(model, f'prints = "omega"\nvalues = {values}'.replace("'", '"'))
+    assert slip in found.slip
+
+
+def test_a_number_in_a_row_is_named():
+    # As above with m_2 = 6.6 kg, where 6 kg is set.
+    rows = '[["27.2251", "112.215"], { set = { m_2 = "6 kg" }, values = ["19.0437", "108.157"] }]'
+    found = judged(CHAIN, f'prints = "omega"\nrows = {rows}')
+    assert found.slip.startswith("m_2 in row 2 is 6.6 kg and not 6 kg")
+
+
+@pytest.mark.slow
+def test_a_condition_of_a_field_is_named():
+    # A clamped end for a pinned one: 1.8751041^2 and 4.6940911^2 for no root at all.
+    model = (
+        BEAM.split("[elements]", maxsplit=1)[0]
+        + """[fields.w]
+domain = ["0", "l"]
+equation = "E*I*w'''' + rho*A*s^2*w = 0"
+conditions = ["w(0) = 0", "w''(0) = 0", "w''(l) = 0", "E*I*w'''(l) = F"]
+[inputs]
+F = {}
+[outputs]
+W = "w(l)"
+"""
+    )
+    found = judged(model, f'prints = "{LAMBDA}"\nvalues = ["3.51602", "22.0345"]')
+    assert "conditions of w is w'(0) = 0 and not w''(0) = 0" in found.slip
+
+
+def test_entries_that_no_number_explains_get_no_explanation():
+    assert not judged(CHAIN, 'prints = "omega"\nvalues = ["25.811", "117.43"]').slip
+
+
 @pytest.mark.slow
 def test_another_support_is_named():
     # tan b = tanh b: b = 3.92660231, 7.06858275, 10.21017612 (Blevins, table 8-1).
