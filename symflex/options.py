@@ -621,6 +621,9 @@ class PlotOptions:
     asymptotes: bool = option(
         False, "--asymptotes", help="Draw asymptotes of lumped functions in a Bode plot."
     )
+    is_matrix: bool = option(
+        False, "--matrix", help="poles_zeros, nyquist: all functions, or those of --tf, as one matrix."
+    )
     verdict: bool = option(False, "--verdict", help="Write above the figure whether the system is stable.")
     spread: Stated | None = option(None, "--spread", **SPREAD)
     port: str | None = option(

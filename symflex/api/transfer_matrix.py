@@ -511,9 +511,25 @@ class BoundTransferMatrix(_Indexed):
 
     def sigma_plot(self, *, band: Ends | None = None, ax: AxesGiven | None = None) -> Figure:
         """Return a figure of the singular values over frequency, in a band [Hz]."""
+        return self._drawn("sigma", band, ax)
+
+    def rga_plot(self, *, band: Ends | None = None, ax: AxesGiven | None = None) -> Figure:
+        """Return a figure of the magnitudes of all relative gains over frequency, in a band [Hz]."""
+        return self._drawn("rga", band, ax)
+
+    def poles_zeros_plot(self, *, band: Ends | None = None, ax: AxesGiven | None = None) -> Figure:
+        """Return a figure of poles and transmission zeros in the s plane, up to the end of a band [Hz]."""
+        return self._drawn("poles_zeros", band, ax)
+
+    def nyquist_plot(self, *, band: Ends | None = None, ax: AxesGiven | None = None) -> Figure:
+        """Return a figure of the characteristic loci, with the point -1, in a band [Hz]."""
+        return self._drawn("nyquist", band, ax)
+
+    def _drawn(self, kind: str, band: Ends | None, ax: AxesGiven | None) -> Figure:
         from symflex.figures import draw
 
-        return draw("sigma", self.exact.each, band_hz=band_in_hertz(band), ax=ax)
+        each = [pair for pair in self.exact.each if not pair.is_zero]
+        return draw(kind, each, band_hz=band_in_hertz(band), ax=ax, model=self._stated, is_matrix=True)
 
     def peak(self, *, band: Ends | None = None) -> Peak:
         """Return the largest singular value over all frequencies, or in a band [Hz], enclosed.

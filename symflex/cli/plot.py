@@ -60,7 +60,7 @@ def draw(spec: Specification, given: DrawOptions) -> int:
 def plot(spec: Specification, given: PlotOptions) -> int:
     """Draw KIND, or a figure that SPEC defines in [figures].
 
-    Kinds are bode, deflection, impulse, locus, modes, nichols, nyquist, poles_zeros, sensitivity, sigma,
+    Kinds are bode, deflection, impulse, locus, modes, nichols, nyquist, poles_zeros, rga, sensitivity, sigma,
     stability and step.
 
     modes draws the lowest mode shapes: as many as --modes gives, else [analysis] modes, else five. locus
@@ -68,7 +68,9 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     a distributed system, those of the lowest modes. nyquist and nichols draw transfer functions, or with
     --gain K the loop gain. sensitivity --gain K draws |S| and |T| with their certified peaks.
 
-    sigma draws the singular values of the matrix that all transfer functions, or those of --tf, make.
+    sigma draws the singular values of the matrix that all transfer functions, or those of --tf, make, and rga
+    its relative gains. With --matrix, poles_zeros draws the poles and transmission zeros of that matrix, and
+    nyquist its characteristic loci.
 
     stability --over T draws the number of unstable poles over a parameter; with two, as --over K --over T, a
     chart with regions, boundaries and the values of SPEC. Ranges are as for 'symflex stability'.
@@ -153,7 +155,7 @@ def plot(spec: Specification, given: PlotOptions) -> int:
         bounds = _at_port(model, given) if drawn == "passivity" else pipeline.derive_for_roots(model, pairs)
         if not given.tfs and not figure:
             bounds = _without_zeros(bounds)
-        drawing = look(bounds, spread=given.spread, model=model)
+        drawing = look(bounds, spread=given.spread, model=model, is_matrix=given.is_matrix)
     save(drawing, path, font=font)
     note(f"wrote {path}")
     return 0

@@ -244,6 +244,7 @@ class Canvas:
     axes: tuple[Axes, ...] = ()  # to draw on, in place of those of a new figure
     gains: tuple[Fraction | None, Fraction | None] | None = None  # first and last one of a locus
     modes: int | None = None  # traced in the locus of a loop with kernels
+    model: Model | None = None  # with all values, of a matrix that is drawn
     clouds: CloudsOf | None = None  # where the poles and zeros of a function may lie
 
     def own_axes(self, *counts: int) -> tuple[Axes, ...]:

@@ -49,9 +49,17 @@ FIGURES: dict[str, Drawing] = {
     "nyquist": _later("loops", "draw_nyquist"),
     "passivity": _later("passivity", "draw_passivity"),
     "poles_zeros": _later("poles_zeros", "draw_poles_zeros"),
+    "rga": _later("sigma", "draw_relative_gains"),
     "sigma": _later("sigma", "draw_sigma"),
     "step": partial(_later("in_time", "draw_responses"), "step"),
 }
+
+MATRIX_FIGURES: dict[str, Drawing] = {
+    "nyquist": _later("sigma", "draw_loci"),
+    "poles_zeros": _later("poles_zeros", "draw_poles_zeros_of_matrix"),
+    "rga": FIGURES["rga"],
+    "sigma": FIGURES["sigma"],
+}  # kinds that are drawn of all functions as one matrix
 
 LOOP_FIGURES: dict[str, Callable[[AnyLoop, Canvas], Figure]] = {
     "locus": _later("loops", "draw_locus"),
@@ -75,6 +83,7 @@ def draw(
     ax: AxesGiven | None = None,
     spread: Stated | None = None,
     model: Model | None = None,
+    is_matrix: bool = False,
 ) -> Figure:
     """Draw a figure of transfer functions or of a loop; ``kind`` is a key of its table above.
 
@@ -82,7 +91,8 @@ def draw(
     takes the place of limits that suit what is drawn; ``title`` is never read as mathematics. The figure is
     3.5 inches wide by default, or 7.16 for what needs the width of a page. On ``ax``, axes of the user's own,
     it is drawn in the user's style. With ``spread`` a pole-zero plot shades where roots may lie. ``limits``
-    are the first and last gain of a locus, and ``modes`` those traced in one of a loop with kernels. Raises
+    are the first and last gain of a locus, and ``modes`` those traced in one of a loop with kernels. With
+    ``is_matrix`` functions are drawn as one matrix. Raises
     UsageError: SF208 an unknown kind or font, SF227 an empty band, SF804 no range, SF806 no straight line in
     the gain, SF902 a wrong size or number of axes; ModelError: SF402 a function is identically zero;
     UncertifiedError: SF807 curves without certified ends.
@@ -92,7 +102,12 @@ def draw(
         from symflex.loops.clouds import root_clouds  # few ask for them
 
         canvas = replace(canvas, clouds=partial(root_clouds, share=spread, model=model))
-    known = FIGURES if isinstance(drawn, Sequence) else LOOP_FIGURES
+    is_loop = not isinstance(drawn, Sequence)
+    if is_matrix and (is_loop or kind not in MATRIX_FIGURES or spread is not None):
+        message = f"--matrix is for figures of kind {', '.join(MATRIX_FIGURES)}"
+        raise refused(message, "leave --gain and --spread out")
+    figures = MATRIX_FIGURES if is_matrix else FIGURES
+    known = LOOP_FIGURES if is_loop else figures
     if kind not in known:
         if kind in LOOP_FIGURES:
             message = f"a figure of kind '{kind}' needs a loop"
@@ -107,7 +122,8 @@ def draw(
     for bound in drawn:
         if bound.is_zero:
             raise ModelError(Diagnostic("SF402", f"{bound.name} is identically zero: nothing to draw"))
-    return _styled(font, canvas, lambda: FIGURES[kind](drawn, canvas))
+    canvas = replace(canvas, model=model)
+    return _styled(font, canvas, lambda: figures[kind](drawn, canvas))
 
 
 def draw_shape(

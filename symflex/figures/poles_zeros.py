@@ -29,17 +29,20 @@ from symflex.figures.s_plane import (
     marks_of,
     write_notes,
 )
+from symflex.figures.sigma import ends_of
 from symflex.figures.style import (
     COLOURS,
     COLUMN_INCHES,
     LINE_INCHES,
     NOTE_POINTS,
     PAGE_INCHES,
+    label_of,
     label_of_tf,
     stability_lines,
     title_lines,
     write_titles,
 )
+from symflex.matrices.zeros import locate_matrix
 from symflex.roots import Band, PoleZeroMap
 from symflex.roots.locate import locate
 from symflex.transfer import AnyBoundFunction
@@ -69,13 +72,37 @@ def draw_poles_zeros(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figu
     A root outside is named where the ray to it leaves; an inset shows what is close to the origin of a wide
     one.
     """
-    band_hz, frame = canvas.band_hz, canvas.frame
-    region = None if band_hz is None else Band(Fraction(0), Fraction(band_hz[1]))
+    region = _region(canvas)
     maps = [locate(bound, None if bound.is_rational else region) for bound in bounds]
-    panels = [marks_of(located) for located in maps]
     clouds = [
         [] if canvas.clouds is None else canvas.clouds(*each) for each in zip(bounds, maps, strict=True)
     ]
+    return _draw_maps(maps, [label_of_tf(bound.source) for bound in bounds], clouds, canvas)
+
+
+def draw_poles_zeros_of_matrix(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
+    """Draw the poles and transmission zeros of the matrix that functions make, in one panel."""
+    model = canvas.model or bounds[0].source.model
+    outputs, inputs = ends_of(bounds)
+    found = locate_matrix(model, [o.name for o in outputs], [i.name for i in inputs], _region(canvas))
+    rows, columns = (", ".join(label_of(end) for end in ends) for ends in (outputs, inputs))
+    return _draw_maps([found.located], [f"$({rows})/({columns})$"], [[]], canvas)
+
+
+def _region(canvas: Canvas) -> Band | None:
+    band = canvas.band_hz
+    return None if band is None else Band(Fraction(0), Fraction(band[1]))
+
+
+def _draw_maps(
+    maps: Sequence[PoleZeroMap],
+    labels: Sequence[str],
+    clouds: Sequence[Sequence[RootCloud]],
+    canvas: Canvas,
+) -> Figure:
+    """Draw poles and zeros, a panel each."""
+    band_hz, frame = canvas.band_hz, canvas.frame
+    panels = [marks_of(located) for located in maps]
     count = len(panels)
     width = canvas.width or (COLUMN_INCHES if count < PANELS_IN_COLUMN else PAGE_INCHES)
     columns = min(count, PANELS_IN_COLUMN if width < (COLUMN_INCHES + PAGE_INCHES) / 2 else PANELS_ON_PAGE)
@@ -109,7 +136,7 @@ def draw_poles_zeros(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figu
     figure = root_figure(given_axes[0]) if given_axes else new_figure(width, height)
     # Panels narrower than their room stand in the middle.
     start = LEFT + (width - LEFT - RIGHT - columns * panel_width - (columns - 1) * GAP) / 2
-    for i, (bound, marks) in enumerate(zip(bounds, panels, strict=True)):
+    for i, (label, marks) in enumerate(zip(labels, panels, strict=True)):
         row, column = divmod(i, columns)
         x = start + column * (panel_width + GAP)
         y = height - above - (row + 1) * (TOP + panel_height) - row * BOTTOM
@@ -123,14 +150,14 @@ def draw_poles_zeros(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figu
         panel = Panel.of(view, panel_width, panel_height, marks)
         inset = () if is_asked else _draw_inset(axes, (marks, clouds[i]), panel)
         write_notes(axes, () if is_asked else marks, panel, COLOUR_OF, marks, inset)
-        axes.set_title(label_of_tf(bound.source), pad=4)
+        axes.set_title(label, pad=4)
         axes.set_xlabel(r"$\mathrm{Re}(s)$ [rad/s]", labelpad=2)
         if column == 0 or given_axes:
             axes.set_ylabel(r"$\mathrm{Im}(s)$ [rad/s]", labelpad=1)
         else:
             axes.tick_params(labelleft=False)
     if given_axes:
-        given_axes[0].set_title("\n".join([*lines, label_of_tf(bounds[0].source)]), pad=4)
+        given_axes[0].set_title("\n".join([*lines, labels[0]]), pad=4)
     else:
         write_titles(figure, titles, 0.04, height)
     return figure

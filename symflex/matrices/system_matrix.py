@@ -51,6 +51,7 @@ LARGEST_WEIGHT = 997  # of combinations in balls: no model has such numbers by c
 DRAWS = 3  # determinants whose greatest common divisor is taken
 MOST_DEGREE = 2_048  # of a determinant modulo a prime, beyond which it is taken for no polynomial
 MOST_FREE = 8  # null vectors that are looked for at a point
+MOST_AT_ONCE = 32  # unknowns whose determinants are taken at one s; sparse rows of more are derived faster
 MOST_DENSE = 64  # rows of a full matrix whose null vector comes from all of it
 FULL = 0.5  # share of entries of a matrix that counts as full; others keep zeros that are exact
 FIRST_POINTS = 16  # at which a determinant is taken first; twice as many until they say its degree
@@ -99,9 +100,9 @@ class SystemMatrix:
     def determinants(self, independent: Sequence[tuple[int, int]]) -> list[fmpz_poly] | None:
         """Return the determinants of A and of ``[A B; C D]`` with some outputs and inputs, up to numbers.
 
-        ``None`` where entries are no polynomials in s with rational coefficients.
+        ``None`` where entries are no polynomials in s with rational coefficients, or rows are many.
         """
-        if self.numeric.equations.definitions:
+        if self.numeric.equations.definitions or len(self.upper) > MOST_AT_ONCE:
             return None
         rows: list[dict[int, fmpz_poly]] = []
         for row in (*self.upper, *(self.lower[i] for i, _ in independent)):

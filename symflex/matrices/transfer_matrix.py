@@ -188,17 +188,7 @@ class BoundMatrix(_PairTable[AnyBoundFunction]):
 
         Not a number where the matrix has a pole or is singular. Raises SF902 where it is not square.
         """
-        import numpy as np
-
-        rows, columns = self.shape
-        if rows != columns:
-            raise refused(f"relative gains are of square matrices; this one is {rows} x {columns}")
-        values = np.moveaxis(self.at(s), (0, 1), (-2, -1))
-        found = np.full(values.shape, np.nan, dtype=complex)
-        for place in np.ndindex(values.shape[:-2]):
-            if np.isfinite(values[place]).all() and np.linalg.matrix_rank(values[place]) == rows:
-                found[place] = values[place] * np.linalg.inv(values[place]).T
-        return np.moveaxis(found, (-2, -1), (0, 1))
+        return relative_gains(self.at(s))
 
     def characteristic_loci(self, s: npt.ArrayLike) -> npt.NDArray[np.complex128]:
         """Return the eigenvalues of a square matrix at points in a row, each followed to its nearest one.
@@ -207,18 +197,39 @@ class BoundMatrix(_PairTable[AnyBoundFunction]):
         """
         import numpy as np
 
-        rows, columns = self.shape
-        if rows != columns:
-            raise refused(f"characteristic loci are of square matrices; this one is {rows} x {columns}")
-        values = np.moveaxis(self.at(points_of(s).ravel()), -1, 0)
-        is_known = np.isfinite(values).all(axis=(1, 2))
-        known = np.linalg.eigvals(values[is_known]).astype(complex)
-        for before, here in pairwise(known):
-            left = list(here)
-            here[:] = [left.pop(int(np.argmin(np.abs(np.array(left) - x)))) for x in before]
-        loci = np.full((len(values), rows), np.nan, dtype=complex)
-        loci[is_known] = known
-        return loci.T
+        return followed(np.moveaxis(self.at(points_of(s).ravel()), -1, 0))
+
+
+def relative_gains(values: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
+    """Return the relative gains of values whose first two axes are rows and columns."""
+    import numpy as np
+
+    rows, columns = values.shape[:2]
+    if rows != columns:
+        raise refused(f"relative gains are of square matrices; this one is {rows} x {columns}")
+    stacked = np.moveaxis(values, (0, 1), (-2, -1))
+    found = np.full(stacked.shape, np.nan, dtype=complex)
+    for place in np.ndindex(stacked.shape[:-2]):
+        if np.isfinite(stacked[place]).all() and np.linalg.matrix_rank(stacked[place]) == rows:
+            found[place] = stacked[place] * np.linalg.inv(stacked[place]).T
+    return np.moveaxis(found, (-2, -1), (0, 1))
+
+
+def followed(values: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
+    """Return the eigenvalues of square matrices in a row (points, n, n), each followed: (n, points)."""
+    import numpy as np
+
+    points, rows, columns = values.shape
+    if rows != columns:
+        raise refused(f"characteristic loci are of square matrices; this one is {rows} x {columns}")
+    is_known = np.isfinite(values).all(axis=(1, 2))
+    known = np.linalg.eigvals(values[is_known]).astype(complex)
+    for before, here in pairwise(known):
+        left = list(here)
+        here[:] = [left.pop(int(np.argmin(np.abs(np.array(left) - x)))) for x in before]
+    loci = np.full((points, rows), np.nan, dtype=complex)
+    loci[is_known] = known
+    return loci.T
 
 
 def derive_matrix(

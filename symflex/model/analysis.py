@@ -50,7 +50,7 @@ FORM_NAMES = (
 FIGURE_KEYS = ("kind", "of", "gain", "over", "range", "band", "until", "at", "data", "title", "doc")
 OF_A_LOOP = ("nyquist", "nichols", "sensitivity", "locus")
 FIGURE_KINDS = (
-    *("bode", "sigma", "poles_zeros", *OF_A_LOOP, "stability", "modes", "deflection"),
+    *("bode", "sigma", "rga", "poles_zeros", *OF_A_LOOP, "stability", "modes", "deflection"),
     *("step", "impulse"),
 )
 IN_TIME = ("step", "impulse")

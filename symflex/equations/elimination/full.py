@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
     from symflex.equations.elimination.closing import SparseRow
 
+MOST_ROWS = 100  # of a full matrix: 70 take 0.7 s, and none can be interrupted
+
 
 @dataclass(frozen=True, eq=False)
 class MinorsInS:
@@ -33,8 +35,9 @@ class MinorsInS:
 
     @staticmethod
     def of(rows: Sequence[SparseRow], borders: Sequence[SparseRow], ring: Ring) -> MinorsInS | None:
-        """Return them for some rows, and borders on top; None if some entry is no polynomial in s."""
-        if any(in_one_variable(x, ring) is None for row in (*rows, *borders) for x in row.values()):
+        """Return them for some rows, and borders on top; None if one is no polynomial in s."""
+        entries = (x for row in (*rows, *borders) for x in row.values())
+        if len(rows) > MOST_ROWS or any(in_one_variable(x, ring) is None for x in entries):
             return None
         return MinorsInS(tuple(rows), ring)
 

@@ -41,7 +41,18 @@ OF_DRAWING = re.compile(
     rf"|pgftext\[x={NUMBER}pt,y={NUMBER}pt,base(?:,left|,right)?(?:,rotate=90)?\]\{{\\fontsize\{{\d\}}\{{[0-9.]+\}}"
     rf"\\selectfont(?:\\color\[rgb\]\{{{NUMBER},{NUMBER},{NUMBER}\}})?\{{\}})"
 )
-OF_MATHEMATICS = {r"\mathrm", r"\sigma", r"\zeta", r"\times", r"\circ", r"\pm", r"\cdot", r"\,", r"\!"}
+OF_MATHEMATICS = {
+    r"\mathrm",
+    r"\sigma",
+    r"\lambda",
+    r"\zeta",
+    r"\times",
+    r"\circ",
+    r"\pm",
+    r"\cdot",
+    r"\,",
+    r"\!",
+}
 
 
 @pytest.fixture(scope="module")
@@ -52,8 +63,12 @@ def bounds():
 
 @pytest.fixture(scope="module")
 def drawn(bounds):
-    """A picture of a kind, drawn once."""
-    return cache(lambda kind: text_of(kind, bounds, width_mm=88.5, title="Two masses"))
+    """A picture of a kind, drawn once; of one function where a matrix has to be square."""
+
+    def made(kind):
+        return text_of(kind, bounds[:1] if kind == "rga" else bounds, width_mm=88.5, title="Two masses")
+
+    return cache(made)
 
 
 def text_of(kind, bounds, **asked):
