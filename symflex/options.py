@@ -788,6 +788,11 @@ class FitOptions:
         help="Time records: the input is held between samples, lines join them, or it has no frequency above "
         "half the sampling rate.",
     )
+    is_validated: bool = option(
+        False,
+        "--validate",
+        help="Time records: fit the first half alone, too, and compare its prediction with the second half.",
+    )
     driving: str | None = option(
         None,
         "--driving",
@@ -829,8 +834,8 @@ class FitOptions:
 
 
 OF_RESONANCES = frozenset(
-    "base modes start criterion is_gain_free is_lag_free is_lag_signed is_delay_free slope driving loop "
-    "order_figure".split()
+    "base modes start criterion is_gain_free is_lag_free is_lag_signed is_delay_free slope is_validated "
+    "driving loop order_figure".split()
 )
 """Options of :class:`FitOptions` that only fits of resonances have."""
 

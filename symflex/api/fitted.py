@@ -260,6 +260,7 @@ def fit(
     estimator: str = "h1",
     segments: int | None = None,
     hold: Literal["auto", "held", "joined", "smooth"] = "auto",
+    validate: bool = False,
 ) -> Fit: ...
 
 
@@ -305,6 +306,7 @@ def fit(
     estimator: str = "h1",
     segments: int | None = None,
     hold: Literal["auto", "held", "joined", "smooth"] = "auto",
+    validate: bool = False,
 ) -> Fit | FittedParameters:
     """Fit resonances, or parameters of a specification, to measured frequency responses.
 
@@ -355,6 +357,8 @@ def fit(
     hold : str
         Time records: the input is ``held`` between samples, ``joined`` by lines, or ``smooth``, without
         frequencies above half the sampling rate.
+    validate : bool
+        Time records: fit the first half alone, too, and compare its prediction with the second half.
 
     Raises
     ------
@@ -409,6 +413,7 @@ def fit(
         slope=slope,
         allow_outside=allow_outside,
         hold=hold,
+        is_validated=validate,
         band=band,
     )
     every = prepared(responses, band, averages, window)

@@ -40,6 +40,8 @@ if TYPE_CHECKING:
 
 FIT_RATIOS, COHERENCE_RATIO = (1.9, 1.3, 0.9), 0.5  # heights of magnitude, phase, residual; of coherence
 FIT_INCHES, SMALL_INCHES, ORDER_INCHES = 4.9, 2.9, 2.9
+TIME_RATIO: Final = 0.35  # height of a record in time over that of the panels above it
+SECONDS: Final = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"))
 FIT_COLUMNS: Final = 2
 FEW_RESPONSES: Final = 4  # responses up to which two stand side by side; more stand three to a row
 SMALL_POINTS, NAME_POINTS = 6.5, 5.5
@@ -103,12 +105,19 @@ def _page(fit: ResonanceFit, shown: Sequence[int]) -> Figure:
     with_coherence = any(fit.measured[r].coherence is not None for r in shown)
     ratios = [*FIT_RATIOS, *([COHERENCE_RATIO] if with_coherence else [])]
     height = (SMALL_INCHES if is_small else FIT_INCHES) * sum(ratios) / sum(FIT_RATIOS)
+    in_time = 0.0 if fit.validation is None else TIME_RATIO * height
+    height += in_time
     figure = new_figure(PAGE_INCHES if is_small else COLUMN_INCHES, down * height)
     figure.set_layout_engine("constrained", h_pad=0.02, w_pad=0.03, hspace=0.03)
     cells = figure.subfigures(down, across, squeeze=False).ravel()
     for cell, r in zip(cells, shown, strict=False):
         measured = fit.measured[r]
-        panels = cell.subplots(len(ratios), 1, sharex=True, height_ratios=ratios)
+        if in_time:
+            upper, lower = cell.subfigures(2, 1, height_ratios=(height - in_time, in_time))
+            _draw_validation(fit, r, lower.subplots(), is_small=is_small)
+        else:
+            upper = cell
+        panels = upper.subplots(len(ratios), 1, sharex=True, height_ratios=ratios)
         for axes in panels:
             axes.grid(visible=True)
         top, bottom, residual, *others = panels
@@ -142,6 +151,25 @@ def _page(fit: ResonanceFit, shown: Sequence[int]) -> Figure:
         handles, count = list(named.values()), len(named)
         figure.legend(handles, list(named), loc="outside lower center", ncols=count, frameon=False)
     return figure
+
+
+def _draw_validation(fit: ResonanceFit, response: int, axes: Axes, *, is_small: bool) -> None:
+    """Draw the second half of a record over its prediction by a fit to the first half."""
+    if (one := fit.validation) is None:
+        return
+    times = one.times_s[response]
+    size, unit = next((x for x in SECONDS if times[-1] >= x[0]), SECONDS[-1])
+    axes.grid(visible=True)
+    axes.plot(times / size, one.measured[response], color=DATA_COLOUR, linewidth=0.7, label="second half")
+    label = f"prediction, {100 * one.share[response]:.2g} % off"
+    axes.plot(times / size, one.predicted[response], color=COLOURS[0], linewidth=0.7, label=label)
+    axes.set_xlim(times[0] / size, times[-1] / size)
+    points = SMALL_POINTS if is_small else None
+    axes.set_xlabel(f"Time [{unit}]", fontsize=points)
+    axes.set_ylabel("Output", fontsize=points)
+    if is_small:
+        axes.tick_params(labelsize=SMALL_POINTS)
+    axes.legend(loc="upper right", fontsize=SMALL_POINTS)
 
 
 def _title(measured: MeasuredResponse) -> str:

@@ -47,6 +47,7 @@ from symflex.data.fitting.resonances import (
     Whole,
 )
 from symflex.data.fitting.starts import with_delays
+from symflex.data.fitting.validation import Validation, validated
 from symflex.data.measurement import MeasuredResponse
 from symflex.data.measurement.measured_response import ratio_of_units
 from symflex.errors import DataError, Diagnostic, FitError, no_such, refused
@@ -110,6 +111,7 @@ class ResonanceFit:
     # not.
     poor: tuple[str, ...] = ()
     record: RecordTerms | None = None  # what else a fit in time found
+    validation: Validation | None = None  # if it was asked for
 
     def __repr__(self) -> str:
         return f"<ResonanceFit: {self.modes.sum()} resonances of {len(self.bases)} responses>"
@@ -245,10 +247,15 @@ def fit_resonances(
         in_time = _fit_in_time(measured, given)
         if in_time is not None and in_time.record and in_time.record.poor and _are_many(measured):
             # What an input does between its samples does not enter a response that is a mean of many.
-            of_lines = fit_resonances([replace(one, samples=()) for one in measured], None, given)
+            in_lines = replace(given, is_validated=False)
+            of_lines = fit_resonances([replace(one, samples=()) for one in measured], None, in_lines)
             return in_time if of_lines.poor else of_lines
         if in_time is not None:
             return in_time
+    if given.is_validated:
+        raise refused(
+            "--validate is for records that are fitted in time", "without --base, --lag, --segments"
+        )
     for response in measured:
         needed = max(FEWEST_LINES, 4 * (given.modes or 1) + 2)
         if response.values.size < needed:
@@ -345,7 +352,8 @@ def _fit_in_time(measured: Sequence[MeasuredResponse], given: FitOptions) -> Res
     settings = Settings(
         given.hold, given.criterion, given.modes, given.slope, given.is_delay_free, given.band
     )
-    search = RecordSearch([one.samples for one in measured], settings)
+    records = [one.samples for one in measured]
+    search = RecordSearch(records, settings)
     stages = Stages()
     problem, dynamics = stages.within(LAST_SHARE, search.found, search.best)
     if not dynamics.order:
@@ -377,7 +385,11 @@ def _fit_in_time(measured: Sequence[MeasuredResponse], given: FitOptions) -> Res
         reasons.append(f"{given.modes} resonances were requested, and the best fit has {fit.modes.sum()}")
     if residues.is_contradicted:
         reasons.append(f"the record contradicts --slope {given.slope}: its static gain is not zero")
-    return replace(fit, poor=(*reasons, *record.poor, *_poor(fit)))
+    fit = replace(fit, poor=(*reasons, *record.poor, *_poor(fit)))
+    if not given.is_validated:
+        return fit
+    validation = validated(records, settings)
+    return replace(fit, validation=validation, warnings=(*fit.warnings, *validation.warnings))
 
 
 def _score_in_time(tried: Tried) -> Score:

@@ -325,11 +325,16 @@ class OutputError:
 
 def _of_lost(record: SampledRecord, dynamics: PoleSet, coefficients: Real) -> Real | None:
     """Return what a unit error of the input adds, weighted, at each sample that was lost."""
+    by_lost = _by_lost(record, dynamics, coefficients)
+    return None if by_lost is None else record.weighted(by_lost)
+
+
+def _by_lost(record: SampledRecord, dynamics: PoleSet, coefficients: Real) -> Complex | None:
     if record.measured is None or record.input is None:
         return None
     response = _struck(record, dynamics, coefficients)
     lost = np.flatnonzero(~record.measured)
-    return record.weighted(response[:, np.newaxis] * record.back[:, np.newaxis] ** lost)
+    return np.asarray(response[:, np.newaxis] * record.back[:, np.newaxis] ** lost, np.complex128)
 
 
 def _struck(record: SampledRecord, dynamics: PoleSet, coefficients: Real) -> Complex:
@@ -389,6 +394,17 @@ def _solved(
     if with_slopes:
         slopes = np.concatenate(stacked)
     return Solved(residual, tuple(errors), coefficients, basis, columns, slopes)
+
+
+def left_by_prediction(record: SampledRecord, dynamics: PoleSet, coefficients: Real) -> Complex:
+    """Return what a plant of other records leaves of one; all that is not the plant's is fitted."""
+    part = _RecordModel(record, dynamics)
+    driven, columns = part.driven(), part.stacked(part.own())
+    if (by_lost := _by_lost(record, dynamics, coefficients)) is not None:
+        columns = np.hstack((columns, by_lost))
+    rest = record.output_lines - part.stacked(driven) @ coefficients[: len(driven)]
+    of_record, _, _ = solved_real(record.weighted(columns), record.weighted(rest))
+    return np.asarray(rest - columns @ of_record, np.complex128)
 
 
 def _columns(parts: Sequence[_RecordModel]) -> Real:
@@ -465,18 +481,19 @@ class _RecordModel:
             columns += [free + other, 1j * (free - other)]
         return columns
 
-    def _stacked(self, columns: list[Complex]) -> Complex:
+    def stacked(self, columns: list[Complex]) -> Complex:
+        """Return columns as a matrix."""
         if not columns:
             return np.zeros((self.record.omega.size, 0), np.complex128)
         return np.stack(columns, axis=1)
 
     def weighted(self, columns: list[Complex]) -> Real:
         """Return columns as real numbers, weighed by the noise."""
-        return self.record.weighted(self._stacked(columns))
+        return self.record.weighted(self.stacked(columns))
 
     def model(self, of_plant: Real, of_record: Real) -> Complex:
         """Return the spectrum of the sum."""
-        total = self._stacked(self.driven()) @ of_plant + self._stacked(self.own()) @ of_record
+        total = self.stacked(self.driven()) @ of_plant + self.stacked(self.own()) @ of_record
         return np.asarray(total, np.complex128)
 
     def slopes(self, of_plant: Real, of_record: Real, step_s: float, length_s: float) -> Complex:
@@ -505,7 +522,7 @@ class _RecordModel:
             columns.append((1j * c * above - 1j * np.conj(c) * below) / length_s)
         if dynamics.is_delay_free:
             columns.append(step_s * self._by_delay(of_plant, residues))
-        return self._stacked(columns)
+        return self.stacked(columns)
 
     def _by_delay(self, of_plant: Real, residues: Complex | Real) -> Complex:
         total = np.zeros(self.record.omega.size, np.complex128)

@@ -30,7 +30,7 @@ from symflex.data.fitting.resonances import NO_PEAK, Complex, Mask, Real
 from symflex.data.fitting.sampled_record import SampledRecord, autoregression, few_levels, is_held
 from symflex.data.measurement.measured_response import Samples
 
-Records = Sequence[tuple[Samples, ...]]
+Records = Sequence[Sequence[Samples]]
 """The records of each output."""
 
 MOST_ORDER, MOST_ROWS, LONGEST = 10, 40, 6000  # poles, block rows and samples of the subspace method
@@ -222,6 +222,10 @@ class RecordSearch:
                 )
             outputs.append(tuple(made))
         return OutputError(tuple(outputs), self.settings.criterion, self.settings.modes)
+
+    def with_noise_of(self, problem: OutputError) -> OutputError:
+        """Return the problem of all lines, with the noise and the hold of another, from any state."""
+        return _noisy_as(self.problem(replace(_kind(problem), is_at_rest=False)), problem)
 
     def _started(self) -> _State:
         """Return the best of what the subspace method proposes."""
@@ -672,9 +676,10 @@ def _doubts(problem: OutputError, dynamics: PoleSet, solved: Sequence[Solved]) -
         if w > NEAR_END * nyquist and z < NO_PEAK:
             hertz, other = w / (2 * np.pi), (2 * nyquist - w) / (2 * np.pi)
             end = f"half the sampling rate, {nyquist / (2 * np.pi):.4g} Hz"
-            warnings.append(
-                f"the pole pair at {hertz:.4g} Hz is near {end}: it may be the image of one at {other:.4g} Hz"
-            )
+            said = f"near {end}: it may be the image of one at {other:.4g} Hz"
+            if w > nyquist:
+                said = f"above {end}: the record shows only its effect"
+            warnings.append(f"the pole pair at {hertz:.4g} Hz is {said}")
     for records, one in zip(problem.outputs, solved, strict=True):
         for record, errors in zip(records, one.errors, strict=True):
             if record.lines is not None or record.noise is None:

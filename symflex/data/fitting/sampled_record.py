@@ -32,6 +32,7 @@ from symflex.data.measurement.measured_response import Samples
 SMALL: Final = 0.5  # size of an argument below which a series has more digits than its closed form
 TERMS: Final = 18  # of that series: 0.5^18/21! is far below rounding
 FORGOTTEN: Final = 37.0  # exp(-37) is the rounding of 1
+BLOCK: Final = 128  # samples whose sum takes one product of matrices
 ON_LINE: Final = 1e-12  # distance of a pole from a line, below which this one stands for it
 MOST_REGRESSORS: Final = 30  # of a disturbance whose colour is estimated
 SAMPLES_EACH: Final = 12  # samples that each of these takes at least
@@ -191,9 +192,15 @@ class SampledRecord:
         last, u = u[0], u[1:]
         decay = -p.real * self.step_s
         u = u[: int(min(FORGOTTEN / decay, u.size)) + 1] if decay > 0 else u
-        m = np.arange(u.size)
-        power = np.exp(p * self.step_s * m)
-        total, moment = complex(power @ u), self.step_s * complex((m * power) @ u)
+        # Powers of exp(p h) up to the size of a block, and those of blocks: few exponentials.
+        blocks = np.zeros((-(-u.size // BLOCK), BLOCK))
+        blocks.ravel()[: u.size] = u
+        m, k = np.arange(BLOCK), BLOCK * np.arange(len(blocks))
+        power, of_block = np.exp(p * self.step_s * m), np.exp(p * self.step_s * k)
+        inner = blocks @ np.stack((power.real, power.imag, m * power.real, m * power.imag), axis=1)
+        sums, moments = inner[:, 0] + 1j * inner[:, 1], inner[:, 2] + 1j * inner[:, 3]
+        total = complex(of_block @ sums)
+        moment = self.step_s * complex(of_block @ moments + (k * of_block) @ sums)
         return (
             g[1] * last + g[2] * total,
             by_pole[1] * last + by_pole[2] * total + g[2] * moment,

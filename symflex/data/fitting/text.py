@@ -53,7 +53,7 @@ def fit_passages(fit: ResonanceFit, shapes: FittedModeShapes | None) -> Iterator
     if shapes is not None:
         yield _shapes(shapes)
     if fit.record is not None:
-        yield Passage([INDENT + line for line in _record_lines(fit, fit.record)])
+        yield Passage([INDENT + line for line in [*_record_lines(fit, fit.record), *_validation_lines(fit)]])
     misfits = (
         [] if fit.record else [(fit.misfit_db(r), fit.misfit_degrees(r)) for r in range(modes.responses)]
     )
@@ -261,6 +261,28 @@ def _record_lines(fit: ResonanceFit, record: RecordTerms) -> Iterator[str]:
     yield "standard errors are scaled to the residual"
 
 
+def _validation_lines(fit: ResonanceFit) -> Iterator[str]:
+    """Yield how far the second half of a record is from what a fit to the first half predicts."""
+    if (one := fit.validation) is None:
+        return
+    by = f"a fit to the first half, of {counted(one.modes, 'resonance')}"
+    for r, (error, share, noise) in enumerate(zip(one.error, one.share, one.noise, strict=True)):
+        off = f"{error:.3g} rms, {100 * share:.2g} % of the output"
+        left = f"it leaves {noise:.3g} of its own"
+        yield f"validation{fit.of_response(r)}: {by}, predicts the second half within {off}; {left}"
+
+
+def _validation_json(fit: ResonanceFit) -> dict[str, object] | None:
+    if (one := fit.validation) is None:
+        return None
+    return {
+        "modes": one.modes,
+        "error_rms": list(one.error),
+        "error_share": list(one.share),
+        "first_half_rms": list(one.noise),
+    }
+
+
 def _record_json(record: RecordTerms) -> dict[str, object]:
     return {
         "hold": record.hold if record.is_driven else None,
@@ -391,6 +413,7 @@ def fit_json(fit: ResonanceFit, shapes: FittedModeShapes | None = None) -> dict[
             for s in fit.scores
         ],
         "record": None if fit.record is None else _record_json(fit.record),
+        "validation": _validation_json(fit),
         "mode_shapes": None if shapes is None else _shapes_json(shapes),
         "warnings": list(fit.warnings),
     }
