@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -111,14 +112,24 @@ class Solved:
     coefficients: Real
     basis: Real  # orthonormal columns that span those of the linear terms
     columns: Real  # shape (k, c), weighted
-    by_dynamics: (
-        Real  # shape (k, p): derivatives of the model by the parameters of a search; (k, 0) if not asked
-    )
+    parts: tuple[_RecordModel, ...] = field(repr=False)
 
     @property
     def cost(self) -> float:
         """The sum of squares."""
         return float(self.residual @ self.residual)
+
+    def slopes(self, problem: OutputError) -> Real:
+        """Return the weighted derivatives of the model by the parameters of a search, shape (k, p)."""
+        column = shared = self.parts[0].driven.shape[1]
+        stacked = []
+        for part in self.parts:
+            width = part.own.shape[1]
+            of_record = self.coefficients[column : column + width]
+            by = part.slopes(self.coefficients[:shared], of_record, problem.step_s, problem.length_s)
+            stacked.append(part.record.weighted(by))
+            column += width
+        return np.concatenate(stacked)
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,9 +150,9 @@ class OutputError:
         sizes = tuple(sum(_values(one) for one in records) for records in self.outputs)
         object.__setattr__(self, "sizes", sizes)
 
-    def solve(self, dynamics: PoleSet, *, with_slopes: bool = False) -> list[Solved]:
+    def solve(self, dynamics: PoleSet) -> list[Solved]:
         """Return every output with the best linear terms."""
-        return [_solved(records, dynamics, self, with_slopes=with_slopes) for records in self.outputs]
+        return [_solved(records, dynamics) for records in self.outputs]
 
     def linear_terms(self, dynamics: PoleSet, output: int) -> int:
         """Return how many linear terms an output has; an offset of each record is one."""
@@ -195,14 +206,22 @@ class OutputError:
             lead = min(one.lead for records in self.outputs for one in records)
             high[-1] = max(min(high[-1], lead + 0.999), x[-1])
 
+        last: list[tuple[Real, list[Solved]]] = []  # at most one: a step that is taken was tried just before
+
+        def solved(vector: Real) -> list[Solved]:
+            if not last or not np.array_equal(last[0][0], vector):
+                last[:] = [(vector.copy(), self.solve(clipped.unpack(vector, self.step_s, self.length_s)))]
+            return last[0][1]
+
         def residual(vector: Real) -> list[Values]:
-            dynamics = clipped.unpack(vector, self.step_s, self.length_s)
-            return [one.residual for one in self.solve(dynamics)]
+            return [one.residual for one in solved(vector)]
 
         def reduced(vector: Real, _: list[Values]) -> tuple[Real, Real]:
-            every = self.solve(clipped.unpack(vector, self.step_s, self.length_s), with_slopes=True)
             stacked = np.concatenate(
-                [np.column_stack((-_without(one.basis, one.by_dynamics), one.residual)) for one in every]
+                [
+                    np.column_stack((-_without(one.basis, one.slopes(self)), one.residual))
+                    for one in solved(vector)
+                ]
             )
             upper = triangle(stacked)
             return upper[:, :-1], upper[:, -1]
@@ -237,17 +256,17 @@ class OutputError:
         if dynamics.integrators:
             return None
         root, at, total = np.sqrt(record.size), 0, np.sum(record.output) / np.sqrt(record.size)
-        own = one.coefficients[len(_RecordModel(record, dynamics).driven()) :]
+        own = one.coefficients[_RecordModel(record, dynamics).driven.shape[1] :]
         has_free = record.input is None or not record.is_at_rest
         for i, p in enumerate(dynamics.poles):
             pole, is_pair = record.pole(p, dynamics.delay_s, is_mean=True), i < dynamics.omega.size
             for values, coefficients in (
-                (pole.driven, one.coefficients),
+                (None if record.input is None else pole.driven, one.coefficients),
                 (pole.free if has_free else None, own),
             ):
                 if values is not None:
                     c = complex(*coefficients[at : at + 1 + is_pair])
-                    level = root * begun / -p if record.is_at_rest and values is pole.driven else 0
+                    level = root * begun / -p if record.is_at_rest and coefficients is not own else 0
                     total -= (1 + is_pair) * (c * (values[0] + level)).real
             at += 1 + is_pair
         if dynamics.has_direct:
@@ -286,8 +305,8 @@ class OutputError:
                     continue
                 u = record.input
                 variance = float(np.mean((u[1:-1] - (u[:-2] + u[2:]) / 2) ** 2)) + np.finfo(float).tiny
-                own = _RecordModel(plain, dynamics)
-                _, basis, rest = solved_real(own.weighted(own.own()), plain.weighted(error))
+                own = _RecordModel(plain, dynamics).own
+                _, basis, rest = solved_real(plain.weighted(own), plain.weighted(error))
                 columns = _without(basis, columns)
                 left = float(np.mean(_without(solved_real(columns, rest)[1], rest) ** 2))
                 normal = columns.T @ columns + np.eye(columns.shape[1]) * left / variance
@@ -298,16 +317,17 @@ class OutputError:
     def covariance(self, dynamics: PoleSet) -> tuple[Real, list[Solved], float]:
         """Return the covariance of the search's parameters and of the linear terms, output after output."""
         # Also the solutions and the sum of squares per degree of freedom, which scales it.
-        every = self.solve(dynamics, with_slopes=True)
-        p = every[0].by_dynamics.shape[1]
+        every = self.solve(dynamics)
+        slopes = [one.slopes(self) for one in every]
+        p = slopes[0].shape[1]
         counts = [one.columns.shape[1] for one in every]
         total = p + sum(counts)
         normal = np.zeros((total, total))
         at = p
-        for one, count in zip(every, counts, strict=True):
+        for one, by, count in zip(every, slopes, counts, strict=True):
             own = slice(at, at + count)
-            normal[:p, :p] += one.by_dynamics.T @ one.by_dynamics
-            normal[:p, own] = one.by_dynamics.T @ one.columns
+            normal[:p, :p] += by.T @ by
+            normal[:p, own] = by.T @ one.columns
             normal[own, :p] = normal[:p, own].T
             normal[own, own] = one.columns.T @ one.columns
             at += count
@@ -339,10 +359,8 @@ def _by_lost(record: SampledRecord, dynamics: PoleSet, coefficients: Real) -> Co
 
 def _struck(record: SampledRecord, dynamics: PoleSet, coefficients: Real) -> Complex:
     """Return the spectrum of the output of a unit input at the first sample."""
-    response = np.zeros(record.omega.size, np.complex128)
-    for column, c in zip(_RecordModel(record.struck(), dynamics).driven(), coefficients, strict=False):
-        response = response + c * column
-    return response
+    driven = _RecordModel(record.struck(), dynamics).driven
+    return np.asarray(driven @ coefficients[: driven.shape[1]], np.complex128)
 
 
 def _gain(record: SampledRecord, dynamics: PoleSet, coefficients: Real) -> Real | float:
@@ -374,43 +392,36 @@ def _without(basis: Real, values: Real) -> Real:
     return np.asarray(values - basis @ (basis.T @ values), np.float64)
 
 
-def _solved(
-    records: tuple[SampledRecord, ...], dynamics: PoleSet, problem: OutputError, *, with_slopes: bool
-) -> Solved:
-    parts = [_RecordModel(record, dynamics) for record in records]
+def _solved(records: tuple[SampledRecord, ...], dynamics: PoleSet) -> Solved:
+    parts = tuple(_RecordModel(record, dynamics) for record in records)
     columns = _columns(parts)
-    shared, widths = len(parts[0].driven()), [len(part.own()) for part in parts]
     target = np.concatenate([record.weighted(record.output_lines) for record in records])
     coefficients, basis, residual = solved_real(columns, target)
-    slopes = np.zeros((target.size, 0))
-    errors, stacked, column = [], [], shared
-    for part, width in zip(parts, widths, strict=True):
-        of_plant, of_record = coefficients[:shared], coefficients[column : column + width]
+    column = shared = parts[0].driven.shape[1]
+    errors = []
+    for part in parts:
+        width = part.own.shape[1]
+        model = part.model(coefficients[:shared], coefficients[column : column + width])
+        errors.append(part.record.output_lines - model)
         column += width
-        errors.append(part.record.output_lines - part.model(of_plant, of_record))
-        if with_slopes:
-            by = part.slopes(of_plant, of_record, problem.step_s, problem.length_s)
-            stacked.append(part.record.weighted(by))
-    if with_slopes:
-        slopes = np.concatenate(stacked)
-    return Solved(residual, tuple(errors), coefficients, basis, columns, slopes)
+    return Solved(residual, tuple(errors), coefficients, basis, columns, parts)
 
 
 def left_by_prediction(record: SampledRecord, dynamics: PoleSet, coefficients: Real) -> Complex:
     """Return what a plant of other records leaves of one; all that is not the plant's is fitted."""
     part = _RecordModel(record, dynamics)
-    driven, columns = part.driven(), part.stacked(part.own())
+    columns = part.own
     if (by_lost := _by_lost(record, dynamics, coefficients)) is not None:
         columns = np.hstack((columns, by_lost))
-    rest = record.output_lines - part.stacked(driven) @ coefficients[: len(driven)]
+    rest = record.output_lines - part.driven @ coefficients[: part.driven.shape[1]]
     of_record, _, _ = solved_real(record.weighted(columns), record.weighted(rest))
     return np.asarray(rest - columns @ of_record, np.complex128)
 
 
 def _columns(parts: Sequence[_RecordModel]) -> Real:
     """Return the weighted columns of an output: those of the plant, then those of each record."""
-    driven = [part.weighted(part.driven()) for part in parts]
-    own = [part.weighted(part.own()) for part in parts]
+    driven = [part.record.weighted(part.driven) for part in parts]
+    own = [part.record.weighted(part.own) for part in parts]
     return np.hstack((np.concatenate(driven), block_diag(*own)))
 
 
@@ -436,7 +447,7 @@ class _RecordModel:
         n = dynamics.omega.size
         self.below = [record.pole(p.conjugate(), dynamics.delay_s) for p in poles[:n]]
         self.at_zero = record.pole(0.0, dynamics.delay_s) if dynamics.integrators else None
-        self.sines = [record.pole(1j * w).free for w in dynamics.lines]
+        self.sines = [(record.pole(1j * w), record.pole(-1j * w)) for w in dynamics.lines]
         self.n = n
         self.is_driven = record.input is not None
         self.has_free = not (self.is_driven and record.is_at_rest)
@@ -453,20 +464,22 @@ class _RecordModel:
                 columns.append(a)
         return columns
 
-    def driven(self) -> list[Complex]:
-        """Return the columns of residues, poles at zero and the feedthrough."""
+    @cached_property
+    def driven(self) -> Complex:
+        """The columns of residues, poles at zero and the feedthrough."""
         if not self.is_driven:
-            return []
+            return self._stacked([])
         columns = self._pairs("driven")
         if self.at_zero is not None:
             both = [self.at_zero.driven, self.at_zero.driven_by_pole]
-            columns += [one for one in both[: self.dynamics.integrators] if one is not None]
+            columns += both[: self.dynamics.integrators]
         if self.dynamics.has_direct:
             columns.append(self.record.direct(self.dynamics.delay_s)[0])
-        return columns
+        return self._stacked(columns)
 
-    def own(self) -> list[Complex]:
-        """Return the columns of what a record begins with, and of what disturbs it."""
+    @cached_property
+    def own(self) -> Complex:
+        """The columns of what a record begins with, and of what disturbs it."""
         record, columns = self.record, []
         if self.has_free:
             columns += self._pairs("free")
@@ -476,25 +489,18 @@ class _RecordModel:
                 columns.append(record.at_first_sample())
         if self.dynamics.has_drift and not (self.dynamics.integrators and self.has_free):
             columns.append(record.drift())
-        for free, w in zip(self.sines, self.dynamics.lines, strict=True):
-            other = record.pole(-1j * w).free
-            columns += [free + other, 1j * (free - other)]
-        return columns
+        for above, below in self.sines:
+            columns += [above.free + below.free, 1j * (above.free - below.free)]
+        return self._stacked(columns)
 
-    def stacked(self, columns: list[Complex]) -> Complex:
-        """Return columns as a matrix."""
+    def _stacked(self, columns: list[Complex]) -> Complex:
         if not columns:
             return np.zeros((self.record.omega.size, 0), np.complex128)
         return np.stack(columns, axis=1)
 
-    def weighted(self, columns: list[Complex]) -> Real:
-        """Return columns as real numbers, weighed by the noise."""
-        return self.record.weighted(self.stacked(columns))
-
     def model(self, of_plant: Real, of_record: Real) -> Complex:
         """Return the spectrum of the sum."""
-        total = self.stacked(self.driven()) @ of_plant + self.stacked(self.own()) @ of_record
-        return np.asarray(total, np.complex128)
+        return np.asarray(self.driven @ of_plant + self.own @ of_record, np.complex128)
 
     def slopes(self, of_plant: Real, of_record: Real, step_s: float, length_s: float) -> Complex:
         """Return the derivatives of the sum by the parameters of a search."""
@@ -516,13 +522,13 @@ class _RecordModel:
         ]
         columns += [-corner * by_pole[n + i] for i, corner in enumerate(dynamics.real)]
         first = of_record.size - 2 * dynamics.lines.size
-        for k, w in enumerate(dynamics.lines):
+        for k, (above, below) in enumerate(self.sines):
             c = complex(of_record[first + 2 * k], of_record[first + 2 * k + 1])
-            above, below = (self.record.pole(sign * 1j * w).free_by_pole for sign in (1, -1))
-            columns.append((1j * c * above - 1j * np.conj(c) * below) / length_s)
+            by_line = 1j * c * above.free_by_pole - 1j * np.conj(c) * below.free_by_pole
+            columns.append(by_line / length_s)
         if dynamics.is_delay_free:
             columns.append(step_s * self._by_delay(of_plant, residues))
-        return self.stacked(columns)
+        return self._stacked(columns)
 
     def _by_delay(self, of_plant: Real, residues: Complex | Real) -> Complex:
         total = np.zeros(self.record.omega.size, np.complex128)

@@ -19,6 +19,7 @@ lines are those of the output's error in time. Noise of any colour weighs lines,
 
 from __future__ import annotations
 
+import cmath
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Final
@@ -40,6 +41,9 @@ FEW_LEVELS: Final = 3  # of a step or a square wave, whose input is held
 HELD: Final = 0.5  # share of samples equal to those before them from which an input is held
 FEWEST_LEVELS, MOST_LEVELS, EVEN = 20, 300, 0.05  # of an input of few bits, and how even their gaps are
 PARTED: Final = 6  # rounds in which a residual is parted into what an input's rounding adds, and the rest
+
+
+Weights = tuple[complex, complex, complex]
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,14 +123,15 @@ class SampledRecord:
     def input_lines(self, delay: int = 0) -> Complex:
         """Return the spectrum of the input, delayed by whole samples."""
         if delay not in self._inputs:
-            self._inputs[delay] = self.spectrum(self._delayed(delay))
+            self._inputs[delay] = self.spectrum(self.delayed(delay))
         return self._inputs[delay]
 
     def input_mean(self, delay: int = 0) -> Complex:
         """Return the line at 0 Hz of the input, delayed by whole samples."""
-        return np.array([np.sum(self._delayed(delay)) / np.sqrt(self.size)], np.complex128)
+        return np.array([np.sum(self.delayed(delay)) / np.sqrt(self.size)], np.complex128)
 
-    def _delayed(self, delay: int) -> Real:
+    def delayed(self, delay: int) -> Real:
+        """Return the input at the output's samples, delayed by whole samples."""
         assert self.input is not None
         first = max(self.lead - delay, 0)
         return self.input[first : first + self.size]
@@ -149,63 +154,7 @@ class SampledRecord:
 
     def pole(self, p: complex, delay_s: float = 0.0, *, is_mean: bool = False) -> PoleSpectrum:
         """Return what a pole ``1/(s - p)`` adds to the spectrum of the output, or to its line at 0 Hz."""
-        h, root = self.step_s, np.sqrt(self.size)
-        back, omega = (np.ones(1, np.complex128), np.zeros(1)) if is_mean else (self.back, self.omega)
-        E = np.exp(p * h)
-        off = 1 - E * back
-        free = 1 / np.where(np.abs(off) < ON_LINE, ON_LINE, off)
-        by_pole = h * E * back * free**2
-        if self.input is None:
-            return PoleSpectrum(None, None, None, free / root, by_pole / root)
-        if self.is_smooth:
-            s = 1j * omega
-            off = np.where(np.abs(s - p) * h < ON_LINE, ON_LINE / h, s - p)
-            driven = np.exp(-s * delay_s) * (self.input_mean() if is_mean else self.input_lines()) / off
-            return PoleSpectrum(driven, driven / off, -s * driven, free / root, by_pole / root)
-        whole, fraction = divmod(delay_s / h, 1)
-        g, g_by_pole, g_by_delay = _weights(p, h, fraction, is_joined=self.is_joined)
-        u = self.input_mean(int(whole)) if is_mean else self.input_lines(int(whole))
-        tail = back**2 * free
-        driven = (g[0] + g[1] * back + g[2] * tail) * u
-        driven_by_pole = (
-            g_by_pole[0] + g_by_pole[1] * back + g_by_pole[2] * tail + g[2] * back**2 * by_pole
-        ) * u
-        driven_by_delay = (g_by_delay[0] + g_by_delay[1] * back + g_by_delay[2] * tail) * u
-        if self.is_at_rest:
-            end, end_by_pole, end_by_delay = self._end(p, int(whole), g, g_by_pole, g_by_delay)
-            last = self._delayed(int(whole))[-1]
-            wrap = (g[2] - E * g[1]) * last
-            wrap_by_pole = (g_by_pole[2] - E * g_by_pole[1] - h * E * g[1]) * last
-            wrap_by_delay = (g_by_delay[2] - E * g_by_delay[1]) * last
-            rest = (end + back * wrap) / root
-            driven = driven - free * rest
-            driven_by_pole = driven_by_pole - by_pole * rest
-            driven_by_pole -= free * (end_by_pole + back * wrap_by_pole) / root
-            driven_by_delay = driven_by_delay - free * (end_by_delay + back * wrap_by_delay) / root
-        return PoleSpectrum(driven, driven_by_pole, driven_by_delay, free / root, by_pole / root)
-
-    def _end(
-        self, p: complex, delay: int, g: Complex, by_pole: Complex, by_delay: Complex
-    ) -> tuple[complex, complex, complex]:
-        """Return the state after the last sample that began at rest, and its derivatives."""
-        u = self._delayed(delay)[::-1]
-        last, u = u[0], u[1:]
-        decay = -p.real * self.step_s
-        u = u[: int(min(FORGOTTEN / decay, u.size)) + 1] if decay > 0 else u
-        # Powers of exp(p h) up to the size of a block, and those of blocks: few exponentials.
-        blocks = np.zeros((-(-u.size // BLOCK), BLOCK))
-        blocks.ravel()[: u.size] = u
-        m, k = np.arange(BLOCK), BLOCK * np.arange(len(blocks))
-        power, of_block = np.exp(p * self.step_s * m), np.exp(p * self.step_s * k)
-        inner = blocks @ np.stack((power.real, power.imag, m * power.real, m * power.imag), axis=1)
-        sums, moments = inner[:, 0] + 1j * inner[:, 1], inner[:, 2] + 1j * inner[:, 3]
-        total = complex(of_block @ sums)
-        moment = self.step_s * complex(of_block @ moments + (k * of_block) @ sums)
-        return (
-            g[1] * last + g[2] * total,
-            by_pole[1] * last + by_pole[2] * total + g[2] * moment,
-            by_delay[1] * last + by_delay[2] * total,
-        )
+        return PoleSpectrum(self, complex(p), delay_s, is_mean)
 
     def direct(self, delay_s: float = 0.0) -> tuple[Complex, Complex]:
         """Return the spectrum of the delayed input itself as the output samples it, and by the delay."""
@@ -270,15 +219,130 @@ class SampledRecord:
         return replace(self, output=np.where(self.measured, self.output, model))
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False)
 class PoleSpectrum:
-    """What a pole of residue 1 adds to the spectrum of an output; None without an input."""
+    """What a pole of residue 1 adds to the spectrum of an output, each part once it is asked for."""
 
-    driven: Complex | None  # by the input
-    driven_by_pole: Complex | None
-    driven_by_delay: Complex | None
-    free: Complex  # by what the record begins with: exp(p t) on its samples
-    free_by_pole: Complex
+    record: SampledRecord
+    p: complex
+    delay_s: float
+    is_mean: bool  # whether it is that of the line at 0 Hz
+
+    @cached_property
+    def free(self) -> Complex:
+        """By what the record begins with: exp(p t) on its samples."""
+        return np.asarray(self._free / np.sqrt(self.record.size), np.complex128)
+
+    @cached_property
+    def free_by_pole(self) -> Complex:
+        """The derivative of :attr:`free`."""
+        return np.asarray(self._free_by_pole / np.sqrt(self.record.size), np.complex128)
+
+    @cached_property
+    def driven(self) -> Complex:
+        """By the input."""
+        if self.record.is_smooth:
+            return np.asarray(np.exp(-self._s * self.delay_s) * self._input / self._off, np.complex128)
+        g = self._weights[0]
+        driven = (g[0] + g[1] * self._back + g[2] * self._tail) * self._input
+        return np.asarray(
+            driven - self._free * self._rest[0] if self.record.is_at_rest else driven, np.complex128
+        )
+
+    @cached_property
+    def driven_by_pole(self) -> Complex:
+        """The derivative of :attr:`driven`."""
+        if self.record.is_smooth:
+            return np.asarray(self.driven / self._off, np.complex128)
+        g, by_pole, _ = self._weights
+        driven = by_pole[0] + by_pole[1] * self._back + by_pole[2] * self._tail
+        driven = (driven + g[2] * self._back**2 * self._free_by_pole) * self._input
+        if self.record.is_at_rest:
+            rest, rest_by_pole, _ = self._rest
+            driven = driven - self._free_by_pole * rest - self._free * rest_by_pole
+        return np.asarray(driven, np.complex128)
+
+    @cached_property
+    def driven_by_delay(self) -> Complex:
+        """The derivative of :attr:`driven` by the delay of the input."""
+        if self.record.is_smooth:
+            return np.asarray(-self._s * self.driven, np.complex128)
+        by_delay = self._weights[2]
+        driven = (by_delay[0] + by_delay[1] * self._back + by_delay[2] * self._tail) * self._input
+        return np.asarray(
+            driven - self._free * self._rest[2] if self.record.is_at_rest else driven, np.complex128
+        )
+
+    @cached_property
+    def _back(self) -> Complex:
+        return np.ones(1, np.complex128) if self.is_mean else self.record.back
+
+    @cached_property
+    def _s(self) -> Complex:
+        return np.asarray(np.zeros(1) if self.is_mean else 1j * self.record.omega, np.complex128)
+
+    @cached_property
+    def _off(self) -> Complex:
+        h, off = self.record.step_s, self._s - self.p
+        return np.asarray(np.where(np.abs(off) * h < ON_LINE, ON_LINE / h, off), np.complex128)
+
+    @cached_property
+    def _free(self) -> Complex:
+        off = 1 - np.exp(self.p * self.record.step_s) * self._back
+        return np.asarray(1 / np.where(np.abs(off) < ON_LINE, ON_LINE, off), np.complex128)
+
+    @cached_property
+    def _free_by_pole(self) -> Complex:
+        h = self.record.step_s
+        return np.asarray(h * np.exp(self.p * h) * self._back * self._free**2, np.complex128)
+
+    @cached_property
+    def _tail(self) -> Complex:
+        return np.asarray(self._back**2 * self._free, np.complex128)
+
+    @property
+    def _whole(self) -> int:
+        return int(self.delay_s // self.record.step_s)
+
+    @cached_property
+    def _input(self) -> Complex:
+        whole = 0 if self.record.is_smooth else self._whole
+        return self.record.input_mean(whole) if self.is_mean else self.record.input_lines(whole)
+
+    @cached_property
+    def _weights(self) -> tuple[Weights, Weights, Weights]:
+        h = self.record.step_s
+        return _weights(self.p, h, self.delay_s / h % 1, is_joined=self.record.is_joined)
+
+    @cached_property
+    def _rest(self) -> tuple[Complex, Complex, Complex]:
+        """What an end of a record that began at rest takes from :attr:`driven`, and its derivatives."""
+        h, E, root = self.record.step_s, np.exp(self.p * self.record.step_s), np.sqrt(self.record.size)
+        g, by_pole, by_delay = self._weights
+        u = self.record.delayed(self._whole)[::-1]
+        last, u = u[0], u[1:]
+        decay = -self.p.real * h
+        u = u[: int(min(FORGOTTEN / decay, u.size)) + 1] if decay > 0 else u
+        # Powers of exp(p h) up to the size of a block, and those of blocks: few exponentials.
+        blocks = np.zeros((-(-u.size // BLOCK), BLOCK))
+        blocks.ravel()[: u.size] = u
+        m, k = np.arange(BLOCK), BLOCK * np.arange(len(blocks))
+        power, of_block = np.exp(self.p * h * m), np.exp(self.p * h * k)
+        inner = blocks @ np.stack((power.real, power.imag, m * power.real, m * power.imag), axis=1)
+        sums, moments = inner[:, 0] + 1j * inner[:, 1], inner[:, 2] + 1j * inner[:, 3]
+        total = complex(of_block @ sums)
+        moment = h * complex(of_block @ moments + (k * of_block) @ sums)
+        # The state behind the last sample, and what the last sample adds to the first of the next period.
+        ends = (
+            (g[1] * last + g[2] * total, g[2] - E * g[1]),
+            (
+                by_pole[1] * last + by_pole[2] * total + g[2] * moment,
+                by_pole[2] - E * by_pole[1] - h * E * g[1],
+            ),
+            (by_delay[1] * last + by_delay[2] * total, by_delay[2] - E * by_delay[1]),
+        )
+        first, second, third = ((end + self._back * wrap * last) / root for end, wrap in ends)
+        return first, second, third
 
 
 def is_held(values: Real) -> bool:
@@ -329,32 +393,44 @@ def autoregression(values: Real, most: int = MOST_REGRESSORS) -> tuple[Real, flo
     return best[1], best[2]
 
 
-def _weights(p: complex, h: float, fraction: float, *, is_joined: bool) -> list[Complex]:
+def _weights(p: complex, h: float, fraction: float, *, is_joined: bool) -> tuple[Weights, Weights, Weights]:
     """Return the response to one sample of the input after 0, 1, 2 steps, by the pole, and by the delay."""
     # Held: differences of the step response s(t). Joined: second differences of that to a ramp, r(t).
-    ages = h * (np.arange(1, 4 if is_joined else 3) - fraction)
-    first, second, third = _phi(np.asarray(p * ages, np.complex128))
-    if is_joined:
-        of_ages = (ages**2 * second, ages**3 * (second - 2 * third), -ages * first)
-        return [np.asarray(np.diff([0.0, 0.0, *x], 2) / h, np.complex128) for x in of_ages]
-    of_ages = (ages * first, ages**2 * (first - second), -np.exp(p * ages))
-    return [np.asarray(np.diff([0.0, 0.0, *x]), np.complex128) for x in of_ages]
+    ages = [h * (k - fraction) for k in ((1, 2, 3) if is_joined else (1, 2))]
+    parts = [(age, *_phi(p * age)) for age in ages]
+    if not is_joined:
+        return (
+            _held(*[age * first for age, first, _, _ in parts]),
+            _held(*[age**2 * (first - second) for age, first, second, _ in parts]),
+            _held(*[-cmath.exp(p * age) for age in ages]),
+        )
+    return (
+        _joined(h, *[age**2 * second for age, _, second, _ in parts]),
+        _joined(h, *[age**3 * (second - 2 * third) for age, _, second, third in parts]),
+        _joined(h, *[-age * first for age, first, _, _ in parts]),
+    )
 
 
-def _phi(x: Complex) -> tuple[Complex, Complex, Complex]:
+def _held(a: complex, b: complex) -> Weights:
+    return 0j, a, b - a
+
+
+def _joined(h: float, a: complex, b: complex, c: complex) -> Weights:
+    return a / h, (b - 2 * a) / h, (c - 2 * b + a) / h
+
+
+def _phi(x: complex) -> tuple[complex, complex, complex]:
     """Return ``phi_1 = (e^x - 1)/x``, ``phi_2 = (phi_1 - 1)/x`` and ``phi_3 = (phi_2 - 1/2)/x``.
 
-    >>> [one.round(6).tolist() for one in _phi(np.array([0j, 1 + 0j]))[:2]]
-    [[(1+0j), (1.718282+0j)], [(0.5+0j), (0.718282+0j)]]
+    >>> [[round(one.real, 6) for one in _phi(x)[:2]] for x in (0j, 1 + 0j)]
+    [[1.0, 0.5], [1.718282, 0.718282]]
     """
-    x = np.asarray(x, np.complex128)
-    is_small = np.abs(x) < SMALL
-    far = np.where(is_small, 1.0, x)
-    closed = (((np.expm1(far) / far) - 1) / far - 0.5) / far
-    series, term = np.zeros_like(x), np.full_like(x, 1 / 6)
-    near = np.where(is_small, x, 0.0)
+    if abs(x) >= SMALL:
+        first = (cmath.exp(x) - 1) / x
+        second = (first - 1) / x
+        return first, second, (second - 0.5) / x
+    third, term = 0j, 1 / 6 + 0j
     for k in range(TERMS):
-        series, term = series + term, term * near / (k + 4)
-    third: Complex = np.asarray(np.where(is_small, series, closed), np.complex128)
-    second: Complex = np.asarray(0.5 + x * third, np.complex128)
-    return np.asarray(1 + x * second, np.complex128), second, third
+        third, term = third + term, term * x / (k + 4)
+    second = 0.5 + x * third
+    return 1 + x * second, second, third
