@@ -15,6 +15,7 @@ quotient of polynomials in ``c = cos omega T``; where it is a straight line in c
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -39,7 +40,7 @@ from symflex.expressions import (
     substitute,
     sum_of,
 )
-from symflex.model import Input, Model, Output, with_numbers
+from symflex.model import ContactPort, Input, Model, Output, with_numbers
 from symflex.model.model import Z
 from symflex.model.ports import port_named
 from symflex.model.sampled import OpenedLoop, opened
@@ -141,11 +142,11 @@ def find_hybrid(model: Model, port: str | None) -> HybridPassivity:
     if len(loop.channels) > 1:
         raise _other("several places take samples")
     driven, pair = at_port(loop.model, chosen)
-    exact = _DampingNeeded.of(driven, loop, pair, is_symbolic=False)
+    exact = _DampingNeeded.of(driven, loop, pair)
     needed, cosine = exact.largest
     with precision(128):
         omega = None if cosine is None else cosine.acos() / ball(exact.rational(exact.period))
-    condition = _DampingNeeded.of(driven, loop, pair, is_symbolic=True).symbolic
+    condition = _DampingNeeded.of(driven, loop, pair, None).symbolic
     damping, alone = exact.rational(exact.damping), sampled_poles(model)
     return HybridPassivity(chosen.name, damping, needed, omega, condition, exact.excess, alone)
 
@@ -162,12 +163,13 @@ class _DampingNeeded:
     damping: Factored
     needed: Factored
     period: Factored
+    controller: Factored  # -H(z), the ring's s for z
 
     @classmethod
     def of(
-        cls, driven: Model, loop: OpenedLoop, pair: tuple[str, str], *, is_symbolic: bool
+        cls, driven: Model, loop: OpenedLoop, pair: tuple[str, str], symbols: Sequence[str] | None = ()
     ) -> _DampingNeeded:
-        """Return it from the machine and the controller, with letters or with numbers."""
+        """Return it from the machine and the controller, some parameters symbols, or all: None."""
         (channel,) = loop.channels
         controller = substitute(channel.controller, {Z: Name(LAPLACE)})
         seen = next(o for o in loop.model.outputs if o.name == channel.seen)
@@ -183,7 +185,7 @@ class _DampingNeeded:
         )
         velocity, force = pair
         pairs = [pair, (velocity, channel.held), (channel.seen, force), *((n, UNIT) for n in times)]
-        derived = derive_all(model if is_symbolic else with_numbers(model), pairs)
+        derived = derive_all(model if symbols is None else with_numbers(model, symbols), pairs)
         ratios = [tf.ratio for tf in derived]
         ring = ratios[0].ring
         if not all(r.ring == ring for r in ratios) or any(tf.kernels for tf in derived):
@@ -202,13 +204,33 @@ class _DampingNeeded:
         late = ratios[5] / ratios[4]
         samples = 0 if ratios[5].is_zero else _whole(late)
         h = -1 * acts * sees * ratios[3] / s**samples
-        return cls(damping, _right_side(h, ratios[4]), ratios[4])
+        return cls(damping, _right_side(h, ratios[4]), ratios[4], h)
 
     def rational(self, value: Factored) -> Fraction:
         """Return a number; SF262 where it contains pi."""
         if not value.is_constant:
             raise _other("its numbers are not rational")
         return Fraction(0) if value.is_zero else Fraction(value.unit)
+
+    @property
+    def changes(self) -> list[fmpz_mpoly]:
+        """What vanishes at values of symbols where the verdict may change.
+
+        There the damping is what is needed at an end of the cosine, or twice at a place between, or the
+        controller has a pole or a zero at z = 1 or z = -1. Where a pole of the loop meets the unit circle
+        elsewhere, the damping is less than what is needed.
+        """
+        ring = self.needed.ring
+        name = str(ring.context.gen(0))
+        sides = [(x.numerator().expand(), x.denominator().expand()) for x in (self.damping, self.needed)]
+        (own, own_below), (other, below) = sides
+        found = []
+        for f in (own * below - other * own_below, below):
+            found += [f.discriminant(name)] if degree_in(f, 0) > 1 else []
+            found += [_end(f, end) for end in (1, -1)]
+        # What vanishes there for all values says nothing of any of them.
+        found += [_end(f, end) for f in _split(self.controller) for end in (1, -1)]
+        return [f for f in found if not f.is_zero()]
 
     @cached_property
     def _everywhere(self) -> list[tuple[fmpq | arb, arb]] | None:
@@ -269,6 +291,18 @@ class _DampingNeeded:
         damping = _letters(self.damping)
         left = "0" if damping is None else format_expression(damping)
         return f"{left} > {format_expression(sum_of(most)) if most else 0}"
+
+
+def changes_of(model: Model, port: ContactPort, name: str) -> list[fmpz_mpoly]:
+    """Return what vanishes at values of a parameter where a machine may become passive or active."""
+    driven, pair = at_port(opened(model).model, port)
+    return _DampingNeeded.of(driven, opened(model), pair, (name,)).changes
+
+
+def _end(polynomial: fmpz_mpoly, at: int) -> fmpz_mpoly:
+    """Return a polynomial at a value of its first generator."""
+    context = polynomial.context()
+    return polynomial.compose(context.constant(at), *context.gens()[1:], ctx=context)
 
 
 def _sign(value: fmpq | arb) -> int | None:

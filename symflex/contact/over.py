@@ -25,6 +25,7 @@ from flint import arb, fmpz_mpoly
 
 from symflex.algebra import degree_in, irreducible_factors
 from symflex.balls import Branching, ball, branch, precision
+from symflex.contact.hybrid import changes_of, find_hybrid
 from symflex.contact.passivity import find_passivity
 from symflex.contact.port import at_port
 from symflex.errors import BudgetError, Diagnostic, SymflexError, UsageError, refused
@@ -180,9 +181,8 @@ def passive_over(model: Model, given: PassivityOptions) -> PassiveValues | Passi
     names = tuple(given.over)
     if len(names) > 2 or len(set(names)) < len(names):  # noqa: PLR2004 (a chart has two axes)
         raise UsageError(Diagnostic("SF902", "give one or two parameters, each once: --over K --over B"))
-    if model.sampled is not None or len(given.ports) > 1:
-        what = "two ports" if len(given.ports) > 1 else "a sampled controller"
-        raise refused(f"--over is not available for {what}", "ask without it, with --set for each value")
+    if len(given.ports) > 1:
+        raise refused("--over is not available for two ports", "ask without it, with --set for each value")
     port = port_named(model, next(iter(given.ports), None))
     first, *others = (pick_gain(model.parameters, name) for name in names)
     limits = limits_of(model, first, given.stability)
@@ -223,20 +223,27 @@ def _values_of(
     model: Model, port: ContactPort, parameter: ModelParameter, limits: tuple[Fraction, Fraction], digits: int
 ) -> PassiveValues:
     """Return for which values of one parameter a machine is passive."""
-    driven, pair = at_port(model, port)
-    (tf,) = derive_all(with_numbers(driven, (parameter.name,), in_kernels=True), [pair])
 
     def verdict(value: Fraction) -> bool | None:
+        there = _with(model, parameter, value)
         try:
-            return find_passivity(_with(model, parameter, value), port, digits, is_explained=False).passive
+            if model.sampled is not None:
+                return find_hybrid(there, port.name).passive
+            return find_passivity(there, port, digits, is_explained=False).passive
         except BudgetError:
             raise
         except SymflexError:  # there the equations have no solution
             return None
 
     asked = PassiveValues(port, parameter, limits, (), digits)
-    ends = _changes(tf, parameter.name, limits, digits)
-    if ends is not None:
+    if model.sampled is not None:
+        conditions: list[fmpz_mpoly] | None = changes_of(model, port, parameter.name)
+    else:
+        driven, pair = at_port(model, port)
+        (tf,) = derive_all(with_numbers(driven, (parameter.name,), in_kernels=True), [pair])
+        conditions = _changes(tf, parameter.name)
+    if conditions is not None:
+        ends = _roots(conditions, parameter.name, limits, digits)
         places = [ball(limits[0]), *ends, ball(limits[1])]
         found = [PassiveInterval(a, b, verdict(_between(a, b))) for a, b in pairwise(places)]
         return replace(asked, intervals=_joined(found))
@@ -269,15 +276,13 @@ def _between(low: arb, high: arb) -> Fraction:
     return middle
 
 
-def _changes(
-    tf: TransferFunction, name: str, limits: tuple[Fraction, Fraction], digits: int
-) -> list[arb] | None:
-    """Return the values at which a verdict may change, ascending; None where no polynomials say it."""
+def _changes(tf: TransferFunction, name: str) -> list[fmpz_mpoly] | None:
+    """Return what vanishes at values at which a verdict may change; None where no polynomials say it."""
     ring = tf.ratio.ring
     used = ring.used_in(f for f, _ in (*tf.ratio.factors, *((h.polynomial, 1) for h in tf.hidden)))
     if tf.kernels or used - {ring.names[0], name}:
         return None
-    context, at = ring.context, ring.index[name]
+    context = ring.context
     mirrored = [-context.gen(0), *context.gens()[1:]]
     n, d = (part.expand() for part in (tf.num, tf.den))
     n_mirrored, d_mirrored = (f.compose(*mirrored, ctx=context) for f in (n, d))
@@ -294,8 +299,16 @@ def _changes(
         conditions += _critical(f, context)[1:]
         if degree_in(f, 0) and not any(x.is_zero() for x in both):
             conditions.append(both[0].resultant(both[1], str(context.gen(0))))
+    return conditions
+
+
+def _roots(
+    conditions: Iterable[fmpz_mpoly], name: str, limits: tuple[Fraction, Fraction], digits: int
+) -> list[arb]:
+    """Return the values inside a range at which a condition vanishes, ascending."""
     roots: list[arb] = []
     for condition in conditions:
+        at = condition.context().names().index(name)
         if condition.is_zero() or not degree_in(condition, at):
             continue
         for factor, _ in irreducible_factors(condition)[1]:

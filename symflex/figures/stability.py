@@ -92,6 +92,7 @@ def _draw_passive(chart: PassiveChart, axes: Axes) -> None:
             inside = [x for x in ends if left < x < right]
             axes.plot(inside, [height] * len(inside), ".", color=COLOURS[0], markersize=4, zorder=3)
     axes.set_xlim(left, right)
+    axes.set_ylim(*(float(chart.slices[i][0] / other_size) for i in (0, -1)))
     set_round_ticks(axes, 6, 6)
     axes.set_xlabel(label_with_unit(first.parameter.name, unit))
     axes.set_ylabel(label_with_unit(chart.other.name, other_unit))

@@ -5,7 +5,9 @@ import pytest
 
 from symflex import pipeline
 from symflex.contact.hybrid import find_hybrid
+from symflex.contact.over import passive_over
 from symflex.errors import ModelError
+from symflex.options import PassivityOptions
 
 HANDLE = """symflex = 1
 [parameters]
@@ -107,3 +109,30 @@ def test_another_machine_is_refused(given, reason):
     (problem,) = caught.value.diagnostics
     assert problem.code == "SF262"
     assert reason in problem.message
+
+
+@pytest.mark.parametrize(
+    ("name", "limits", "ends"),
+    [
+        ("K", (-500, 3000), (0, 800)),
+        ("B", (-1, 1), (-0.2, 0.2)),
+        ("T", (0, 0.01), (0, 8e-4)),
+        ("b", (0, 2), (0.8, 2)),
+    ],
+)
+def test_passive_values_are_those_of_the_condition(name, limits, ends):
+    # b > K T/2 + |B| at K = 1000, B = 0.3, b = 0.7, T = 1 ms, and K > 0, or the handle drifts away.
+    text = HANDLE.format(wall=PD, delay="0", force="-wall*x", more="")
+    text = text.replace('K = "1 kN/m"', 'K = { value = "1 kN/m", assume = "real" }')
+    values = passive_over(pipeline.loads(text), PassivityOptions(("x",), (name,), limits))
+    assert values.certified
+    (interval,) = values.passive
+    assert [float(interval.low.mid()), float(interval.high.mid())] == pytest.approx(ends, abs=1e-12)
+
+
+def test_the_stiffest_wall_that_is_passive_with_a_sample_of_delay():
+    text = HANDLE.format(wall=PD, delay="T", force="-wall*x", more="")
+    values = passive_over(pipeline.loads(text), PassivityOptions(("x",), ("K",), (0, 1000)))
+    (interval,) = values.passive
+    stiffest = float(interval.high.mid())
+    assert needed(lambda z: (stiffest + 0.3 * (z - 1) / (1e-3 * z)) / z) == pytest.approx(0.7, rel=1e-6)
