@@ -359,9 +359,13 @@ class SumSigns:
         return int(value.real > 0) - int(value.real < 0)
 
 
+def _is_negative_number(term: Expression) -> bool:
+    return isinstance(term, Negative) and isinstance(term.operand, Number)
+
+
 def _without_ones(terms: Sequence[Expression]) -> Sequence[Expression]:
     """Return terms with ``sinh(q)^2`` for ``cosh(q)^2 - 1``, and ``-sin(q)^2`` for ``cos(q)^2 - 1``."""
-    for term in terms:
+    for term in terms if any(isinstance(t, Number) or _is_negative_number(t) for t in terms) else ():
         front, powers = powers_of(term)
         (call, n), *more = powers.items() if powers else ((ONE, 0),)
         one = number(-front)
