@@ -33,6 +33,11 @@ EXAMPLES: Final = (
     "eppinger1988/sliding_free_beam", "classics/sallen_key", "transducers/loudspeaker_closed_box",
     "mechatronics/acc_benchmark", "nonlinear/furuta_pendulum", "mechatronics/delayed_pendulum",
 )  # fmt: skip
+SIGNS: Final = (
+    0xB0, 0xB1, 0xB7, 0xD7, *range(0x391, 0x3CA), 0x3D1, 0x3D5, 0x3F5, 0x2026, *range(0x2032, 0x2035), 0x2113,
+    0x2192, 0x2202, 0x2212, 0x2218, 0x221A, 0x221E, 0x2248, 0x2264, 0x2265, 0x22C5,
+)  # fmt: skip
+"""Letters and signs of drawings beside those of ASCII."""
 MOMENT: Final = (1980, 1, 1, 0, 0, 0)
 """Of all files in an archive, so that the same sources make the same bytes."""
 
@@ -59,6 +64,7 @@ def parts() -> Iterator[tuple[str, bytes]]:
             yield f"wheels/{wheel.name}", wheel.read_bytes()
         yield "wheels/symflex.zip", package()
         known["wheels"] = [*(f"wheels/{wheel.name}" for wheel in wheels), "wheels/symflex.zip"]
+        yield "letters.json", json.dumps(widths()).encode()
     yield "parts.json", json.dumps(known, ensure_ascii=False).encode()
 
 
@@ -67,6 +73,27 @@ def example(name: str) -> dict[str, str]:
     text = (ROOT / "derivations" / f"{name}.toml").read_text("utf-8")
     lines = [line for line in text.splitlines(keepends=True) if not line.startswith("#:schema")]
     return {"title": str(tomllib.loads(text).get("title", name)), "text": "".join(lines)}
+
+
+def widths() -> dict[str, dict[str, float]]:
+    """Return how wide letters of drawings are, as shares of their size, by face."""
+    from matplotlib.font_manager import FontProperties, findfont
+    from matplotlib.ft2font import FT2Font, LoadFlags
+
+    found = {}
+    faces = {
+        "upright": FontProperties(family="STIXGeneral"),
+        "italic": FontProperties(family="STIXGeneral", style="italic"),
+        "bold": FontProperties(family="STIXGeneral", weight=700),
+    }
+    for face, properties in faces.items():
+        font = FT2Font(findfont(properties))
+        font.set_size(1000, 72)
+        known = font.get_charmap()
+        letters = [chr(c) for c in [*range(32, 127), *SIGNS] if c in known]
+        advances = (font.load_char(ord(c), flags=LoadFlags.NO_HINTING).linearHoriAdvance for c in letters)
+        found[face] = {c: round(a / 65536 / 1000, 4) for c, a in zip(letters, advances, strict=True)}
+    return found
 
 
 def package() -> bytes:
@@ -83,7 +110,9 @@ def package() -> bytes:
 
 def lay_out(folder: Path) -> None:
     """Write the page and its parts as the site has them."""
-    files = {f"playground/{path.name}": path.read_bytes() for path in sorted(PAGE.iterdir())}
+    files = {
+        f"playground/{path.name}": path.read_bytes() for path in sorted(PAGE.iterdir()) if path.is_file()
+    }
     files |= {f"playground/{name}": content for name, content in parts()}
     files[f"stylesheets/{FONT}"] = (ROOT / "symflex" / "report" / "fonts" / FONT).read_bytes()
     for name, content in files.items():

@@ -10,10 +10,13 @@ import contextlib
 import io
 import json
 import os
+import sys
 from math import tau
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 from xml.etree import ElementTree
+
+import letters
 
 from symflex import pipeline
 from symflex.cli import run
@@ -110,6 +113,40 @@ def tree(markup: str) -> list[Any]:
     return listed(ElementTree.fromstring(markup))
 
 
+def drawing(text: str) -> dict[str, Any]:
+    """Return lines and runs of letters of a model's drawing, None if it is large."""
+
+    def drawn(model: Model) -> object:
+        if "matplotlib" not in sys.modules:
+            letters.stand_in()
+        from symflex.drawing import LARGEST_DRAWING, drawing_of  # imports what stands in for matplotlib
+
+        if len(model.elements) > LARGEST_DRAWING:
+            return None
+        made = drawing_of(model)
+        parts = []
+        for item in made.items:
+            strokes = [[s.points, s.width, s.fill, s.is_dashed] for s in item.strokes]
+            texts = [
+                [
+                    [
+                        r.text,
+                        t.x + t.size * r.x,
+                        t.y + t.size * r.y,
+                        t.size * r.width,
+                        t.size * r.size,
+                        r.face,
+                    ]
+                    for r in letters.set_line(t.markup).runs
+                ]
+                for t in item.texts
+            ]
+            parts.append({"kind": item.kind, "name": item.name, "strokes": strokes, "texts": texts})
+        return {"width": made.width, "height": made.height, "parts": parts}
+
+    return _asked(text, drawn)
+
+
 def response(text: str, pair: Sequence[str], frequencies: Sequence[float]) -> dict[str, Any]:
     """Return real and imaginary parts at frequencies in Hz, rounded from what balls enclose."""
 
@@ -133,4 +170,4 @@ def _asked(text: str, question: Callable[[Model], object]) -> dict[str, Any]:
         return {"found": None, "err": error.diagnostics[0].message}
 
 
-QUESTIONS: Final = {f.__name__: f for f in (examine, complete, command, formula, response)}
+QUESTIONS: Final = {f.__name__: f for f in (examine, complete, command, formula, drawing, response)}

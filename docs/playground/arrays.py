@@ -13,6 +13,7 @@ import math
 import sys
 from itertools import accumulate, product
 from itertools import repeat as endless
+from operator import mul
 from types import ModuleType
 
 nan, inf, pi, newaxis = math.nan, math.inf, math.pi, None
@@ -329,6 +330,19 @@ class ndarray:
 
     def __pos__(self):
         return self
+
+    def __matmul__(self, other):
+        other = asarray(other)
+        columns = 1 if other.ndim == 1 else other.shape[1]
+        kind = max(self.kind, other.kind, "i", key=RANKS.index)
+        size, left, right = self.shape[-1], self.flat, other.flat
+        start = TYPES[kind].convert(0)
+        made = [
+            sum(map(mul, left[i * size : (i + 1) * size], right[j::columns]), start)
+            for i in range(_size(self.shape[:-1]))
+            for j in range(columns)
+        ]
+        return ndarray(made, self.shape[:-1] + other.shape[1:], kind)
 
     def __abs__(self):
         return absolute(self)

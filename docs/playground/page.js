@@ -1,6 +1,6 @@
 // The page: a model on the left, and on the right its formula, roots and plots. Nothing leaves the browser.
 import { Editor } from "./editor.js";
-import { bode, rootMap } from "./plots.js";
+import { bode, drawn, rootMap } from "./plots.js";
 import { model as ofLink, link } from "./link.js";
 
 const here = (id) => document.getElementById(id);
@@ -124,11 +124,11 @@ function showFormula({ found, err }) {
     });
 }
 
-const digits = (x) => {
+const digits = (x, count = 7) => {
     const number = Number(x);
     if (!number) return "0";
     const size = Math.abs(number);
-    return (size >= 1e-3 && size < 1e6 ? String(+number.toPrecision(7)) : number.toExponential(5)).replaceAll("-", "\u2212");
+    return (size >= 1e-3 && size < 1e6 ? String(+number.toPrecision(count)) : number.toExponential(count - 1)).replaceAll("-", "\u2212");
 };
 
 function rootTable(roots, name) {
@@ -136,9 +136,9 @@ function rootTable(roots, name) {
     const rows = upper.slice(0, 40).map((r) => {
         const isReal = r.is_real || Number(r.im) === 0;
         const value = isReal ? digits(r.re) : `${Number(r.re) ? `${digits(r.re)} ` : ""}± ${digits(r.im)} j`;
-        const zeta = r.damping_ratio === null ? "" : digits(r.damping_ratio);
+        const zeta = r.damping_ratio === null ? "" : digits(r.damping_ratio, 5);
         const times = r.multiplicity > 1 ? ` ×${r.multiplicity}` : "";
-        return made("tr", {}, ...[value + times, digits(r.frequency_hz), zeta, r.radius === "0" ? "exact" : digits(r.radius)].map((c) => made("td", {}, c)));
+        return made("tr", {}, ...[value + times, digits(r.frequency_hz, 6), zeta, r.radius === "0" ? "exact" : digits(r.radius, 2)].map((c) => made("td", {}, c)));
     });
     if (!rows.length) return made("p", { class: "quiet" }, `no ${name}`);
     const head = made("tr", {}, ...[`s [rad/s]`, "f [Hz]", "ζ", "within"].map((c) => made("th", { scope: "col" }, c)));
@@ -229,6 +229,7 @@ async function work(own) {
         const command = (what, ...options) => step(what, "command", { arguments: options });
         show("formula", ...showFormula(await step(`Deriving ${pair}`, "formula", { pair: pair.split("/") })));
         results.first ??= performance.now();
+        await showDrawing(step, show);
         const located = await command(`Proving poles and zeros of ${pair}`, "roots", "--tf", pair, "--json");
         results.roots = located;
         show("roots", ...showRoots(located));
@@ -261,6 +262,12 @@ function choose(id, names, fallback) {
     return select.value;
 }
 
+async function showDrawing(step, show) {
+    const { found } = await step("Drawing", "drawing", {});
+    here("drawing").hidden = !found;
+    if (found) show("drawing", drawn(found));
+}
+
 async function showResponse(step, show, pair, band, map) {
     const roots = map ? [...map.poles, ...map.zeros] : [];
     const sizes = roots.map((r) => Math.hypot(Number(r.re), Number(r.im)) / (2 * Math.PI)).filter((f) => f > 0);
@@ -270,7 +277,8 @@ async function showResponse(step, show, pair, band, map) {
     // A resonance is narrower than the grid.
     for (const root of roots) {
         const f = Math.abs(Number(root.im)) / (2 * Math.PI), wide = Math.max(Math.abs(Number(root.re)) / (2 * Math.PI), 1e-4 * f);
-        for (const share of [-6, -3, -1.5, -0.7, -0.3, 0, 0.3, 0.7, 1.5, 3, 6]) grid.add(f + share * wide);
+        const isOnAxis = Number(root.re) === 0; // where the response is infinite, or zero
+        for (const share of [-6, -3, -1.5, -0.7, -0.3, 0, 0.3, 0.7, 1.5, 3, 6]) if (share || !isOnAxis) grid.add(f + share * wide);
     }
     const hertz = [...grid].filter((f) => f >= low && f <= high).sort((a, b) => a - b);
     const { found, err } = await step(`Evaluating ${pair}`, "response", { pair: pair.split("/"), frequencies: hertz });
@@ -383,6 +391,12 @@ say("Starting", true);
 window.symflex = {
     ready: start(),
     results,
-    settled: () => (timer ? new Promise((done) => setTimeout(done, 2 * PAUSE)).then(() => settled) : settled),
+    settled: async () => {
+        for (let own = -1; own !== round || timer;) {
+            while (timer) await new Promise((done) => setTimeout(done, 20));
+            own = round;
+            await settled;
+        }
+    },
     ask: (question, given) => thread.ask(question, given),
 };

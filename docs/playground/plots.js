@@ -40,7 +40,7 @@ function path(points, jump) {
 }
 
 export function bode(hertz, values, unit) {
-    const left = 58, right = 12, width = 560, each = 150, between = 18, top = 12;
+    const left = 52, right = 20, width = 440, each = 135, between = 18, top = 12;
     const plot = frame(width, top + 2 * each + between + 40, "Bode plot: magnitude and phase over frequency");
     const [low, high] = [Math.log10(hertz[0]), Math.log10(hertz.at(-1))];
     const across = (f) => left + ((Math.log10(f) - low) / (high - low)) * (width - left - right);
@@ -80,7 +80,7 @@ export function bode(hertz, values, unit) {
 }
 
 export function rootMap(poles, zeros) {
-    const width = 560, height = 300, left = 62, right = 14, top = 12, bottom = 40;
+    const width = 440, height = 300, left = 52, right = 14, top = 12, bottom = 40;
     const plot = frame(width, height, `Poles and zeros in the s plane: ${poles.length} poles, ${zeros.length} zeros`);
     const all = [...poles, ...zeros].map((r) => [Number(r.re), Number(r.im)]);
     const most = (i) => Math.max(...all.map((z) => Math.abs(z[i])), 0);
@@ -94,7 +94,7 @@ export function rootMap(poles, zeros) {
         plot.append(element("path", { class: "grid-line", d: `M${left} ${y(mark)}H${width - right}` }));
         plot.append(text(left - 6, y(mark) + 4, tidy(mark), { "text-anchor": "end" }));
     }
-    for (const mark of marks(from, to, 6)) {
+    for (const mark of marks(from, to, 5)) {
         plot.append(element("path", { class: "grid-line", d: `M${x(mark)} ${top}V${height - bottom}` }));
         plot.append(text(x(mark), height - bottom + 16, tidy(mark), { "text-anchor": "middle" }));
     }
@@ -114,4 +114,36 @@ export function rootMap(poles, zeros) {
     plot.append(text((left + width - right) / 2, height - 6, "Re s [rad/s]", { "text-anchor": "middle", class: "quiet" }));
     plot.append(text(left + 8, top + 15, "Im s [rad/s]", { class: "quiet" }));
     return plot;
+}
+
+const ROLES = new Set(["element", "input", "output", "block", "field"]);
+
+/** The drawing of a model: strokes, and runs of letters as wide as they were measured. */
+export function drawn({ width, height, parts }) {
+    const picture = element("svg", {
+        viewBox: `0 0 ${width.toFixed(2)} ${height.toFixed(2)}`, class: "drawn", role: "img", "aria-label": "The model, drawn",
+        width: `${(2.1 * width).toFixed(0)}`,
+    });
+    for (const { kind, name, strokes, texts } of parts) {
+        const group = element("g");
+        if (ROLES.has(kind)) group.append(element("title", {}, `${kind} ${name}`));
+        for (const [points, wide, fill, isDashed] of strokes) {
+            const isClosed = points.length > 2 && points[0].every((x, i) => x === points.at(-1)[i]);
+            const d = points.map(([x, y], i) => `${i ? "L" : "M"}${x.toFixed(2)} ${(height - y).toFixed(2)}`).join("");
+            const shade = { "": "none", "#E3E3E3": "grey", "#FFFFFF": "paper" }[fill] ?? "ink";
+            group.append(element("path", { d: isClosed ? `${d}Z` : d, "stroke-width": wide, class: `${shade}${isDashed ? " dashed" : ""}` }));
+        }
+        for (const [letters, x, y, wide, size, face] of texts.flat()) {
+            if (!letters) {
+                group.append(element("path", { d: `M${x.toFixed(2)} ${(height - y).toFixed(2)}h${wide.toFixed(2)}`, "stroke-width": 0.5, class: "none" }));
+                continue;
+            }
+            group.append(element("text", {
+                x: x.toFixed(2), y: (height - y).toFixed(2), "font-size": size.toFixed(2), textLength: wide.toFixed(2),
+                lengthAdjust: "spacingAndGlyphs", class: face,
+            }, letters));
+        }
+        picture.append(group);
+    }
+    return picture;
 }

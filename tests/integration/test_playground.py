@@ -126,6 +126,8 @@ def test_formulas_roots_and_latex_are_those_of_the_program(browser, tmp_path, mo
     )
     assert shown["roots"]["out"] == native(text, "roots", "--tf", pair, "--json")
     assert browser.run("document.querySelectorAll('#formula math').length") > 0
+    assert browser.run("document.querySelectorAll('#bode path.curve').length") == 2
+    assert browser.run("document.querySelectorAll('#drawing :is(path, text)').length") > 5
     # Half of it is a model with problems, or none.
     broken = text[: len(text) * 2 // 3]
     problems = enter(browser, broken)["problems"]

@@ -83,6 +83,7 @@ KEYS = (
     "np.broadcast_to(x[:, :1], (3, 5))", "np.eye(3)", "np.signbit(x[0, 1:]) != np.signbit(x[0, :-1])",
     "np.prod(x.shape, dtype=int)", "x.astype(complex).imag", "np.hypot(x[0], x[1])",
     "np.maximum.reduce([x[0], x[1], x[2]])", "np.minimum(x[0], 2.0).clip(0.0, 1.0)", "~(x > 3.0)",
+    "x @ x.T", "x @ x[0]", "x[0] @ x[1]", "np.zeros((0, 4)) @ x[0]", "x.T @ np.array([1j, 2.0, 3.0])",
     "x.flat[3] * np.array([1.0, 2.0])", "np.zeros_like(x[0]) + 1", "-x[0] ** 2",
     "2.0 ** np.array([0.5, 3.0])",
 )  # fmt: skip
