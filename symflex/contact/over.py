@@ -288,7 +288,10 @@ def _changes(tf: TransferFunction, name: str) -> list[fmpz_mpoly] | None:
     n_mirrored, d_mirrored = (f.compose(*mirrored, ctx=context) for f in (n, d))
     even = n * d_mirrored + n_mirrored * d
     polynomials = [d, *(h.polynomial for h in tf.hidden)]
-    conditions: list[fmpz_mpoly] = []
+    # A residue on the axis, or what grows as s, changes its sign where a zero meets a pole, or infinity.
+    conditions: list[fmpz_mpoly] = _critical(n, context)[1:]
+    if degree_in(n, 0) and degree_in(d, 0):
+        conditions.append(n.resultant(d, str(context.gen(0))))
     if not even.is_zero():
         sign = context.constant(1)
         for factor, _ in irreducible_factors(even)[1]:

@@ -70,3 +70,44 @@ def test_slices_that_are_known_when_the_time_ends_are_kept():
     assert "of 21 values of 'tau'" in chart.missing[0]
     for tau, values in chart.slices:
         assert ends(values)[0][1] == pytest.approx(min(1 / float(tau), 100), rel=1e-9)
+
+
+NATURAL = """
+symflex = 1
+parameters = { G = 1, k_s = 1e5, m_1 = 60, m_2 = 20, k = "95 kN/m" }
+inputs = { F = { force = "x_1" } }
+outputs = { X = "x_2" }
+[elements]
+drive  = { type = "force_source", at = "x_1", f = "G*k_s*(x_t - x_2)" }
+sensor = { type = "spring", between = ["x_2", "x_t"], k = "k_s" }
+motor  = { type = "mass", at = "x_1", m = "m_1" }
+load   = { type = "mass", at = "x_2", m = "m_2" }
+spring = { type = "spring", between = ["x_1", "x_2"], k = "k" }
+"""
+ELASTIC = """
+symflex = 1
+parameters = { K_s = 150, K_v = 40, P = 3, I = 0.4, m = 1 }
+inputs = { F = { force = "y" } }
+outputs = { Y = "y" }
+[signals]
+x = "(P + I/s)*(K_s - K_v)*y/(s + (P + I/s)*K_s)"
+[elements]
+link   = { type = "mass", at = "y", m = "m" }
+spring = { type = "force_source", at = "y", f = "-K_s*(y - x)" }
+"""
+
+
+def test_force_feedback_hides_no_more_than_the_mass_of_the_motor():
+    # 1 + G <= (m_1 + m_2)/m_2, so that the mass felt, (m_1 + m_2)/(1 + G), is not below m_2: the zero of
+    # v_2/F = (m_1 s^2 + k (1 + G))/(s (m_1 m_2 s^2 + (m_1 + m_2) k)) lies below its pole (Foster 1924). That is
+    # what Colgate and Hogan (1989) conclude of force feedback: G = m_1/m_2 = 3 at most.
+    values = passive_over(machine(NATURAL), PassivityOptions(("x_t",), ("G",), (0, 8)))
+    assert values.certified
+    assert ends(values) == [(0.0, pytest.approx(3, rel=1e-12))]
+
+
+def test_a_series_elastic_actuator_shows_no_more_than_its_spring():
+    # Vallery et al. (2008): K_v <= K_s. By hand Im(f/y) = P omega^3 (K_s - K_v) over a square.
+    values = passive_over(machine(ELASTIC), PassivityOptions(("y",), ("K_v",), (0, 400)))
+    assert values.certified
+    assert ends(values) == [(0.0, pytest.approx(150, rel=1e-12))]

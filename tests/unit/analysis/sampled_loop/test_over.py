@@ -100,3 +100,19 @@ def test_what_is_said_is_said_of_the_circle():
     found = loads(WALL).stability(over="K", limits=(0, 3000))
     assert "all poles outside the unit circle counted" in str(found)
     assert found.to_json_dict()["sampled"] == "wall: sampled every 0.001 s, the output held"
+
+
+@pytest.mark.parametrize("beta", [0.2, 2 * 2**0.5 - 2, 1.5])
+def test_the_stiffest_wall_of_a_free_mass_by_jury(beta):
+    # z (z - 1)^2 + alpha/2 z (z + 1) + beta/2 (z + 1)(z - 1) with alpha = K T^2/m and beta = B T/m, by the
+    # criterion of Jury: alpha < 2 beta (2 - beta)/(2 + beta), at most 12 - 8 sqrt(2) = 0.686.
+    text = f"""symflex = 1
+parameters = {{ m = 2, K = 1, B = {beta * 200}, T = 0.01 }}
+inputs     = {{ F = {{}} }}
+outputs    = {{ X = "x" }}
+blocks     = {{ wall = "K + B*(z - 1)/(T*z)" }}
+sampled    = {{ period = "T" }}
+signals    = {{ x = "(F - wall*x)/(m*s^2)" }}
+"""
+    found = loads(text).stability(over="K", limits=(0, 60_000))
+    assert float(found.boundaries[0].gain) / 20_000 == pytest.approx(2 * beta * (2 - beta) / (2 + beta))
