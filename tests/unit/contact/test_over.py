@@ -99,8 +99,8 @@ spring = { type = "force_source", at = "y", f = "-K_s*(y - x)" }
 
 def test_force_feedback_hides_no_more_than_the_mass_of_the_motor():
     # 1 + G <= (m_1 + m_2)/m_2, so that the mass felt, (m_1 + m_2)/(1 + G), is not below m_2: the zero of
-    # v_2/F = (m_1 s^2 + k (1 + G))/(s (m_1 m_2 s^2 + (m_1 + m_2) k)) lies below its pole (Foster 1924). That is
-    # what Colgate and Hogan (1989) conclude of force feedback: G = m_1/m_2 = 3 at most.
+    # v_2/F = (m_1 s^2 + k (1 + G))/(s (m_1 m_2 s^2 + (m_1 + m_2) k)) lies below its pole (Foster 1924).
+    # Colgate and Hogan (1989) conclude that of force feedback: G = m_1/m_2 = 3 at most.
     values = passive_over(machine(NATURAL), PassivityOptions(("x_t",), ("G",), (0, 8)))
     assert values.certified
     assert ends(values) == [(0.0, pytest.approx(3, rel=1e-12))]
