@@ -23,22 +23,38 @@ from symflex.expressions import (
     Derivative,
     Expression,
     Name,
+    Negative,
+    Sum,
     format_expression,
     is_number,
     names,
+    nodes,
     number,
     substitute,
 )
-from symflex.papers.formula import defined_symbol
+from symflex.papers.formula import defined_symbol, read_value
 from symflex.papers.laplace_equations import Signals, degree, is_ratio, signals_in, terms_of
 from symflex.papers.matrices import Matrix, Value
 from symflex.papers.matrix_equations import NamedMatrices
-from symflex.papers.source import Paper, PrintedEquation, refusal, statements, text_of, written
+from symflex.papers.source import (
+    Paper,
+    PrintedEquation,
+    group_end,
+    refusal,
+    statements,
+    text_of,
+    written,
+)
 from symflex.papers.symbols import LAPLACE, PaperNotation, PrintedSymbol
 
 GAP: Final = "# GAP:"
 FORCES: Final = ("F", "f", "u", "U", "tau", "T", "M", "Q", "V", "v", "i", "I", "w", "q", "p", "r", "d")
 CONSTANT: Final = ("g", "pi")  # what is no input, however it stands there
+ENERGIES: Final = 3  # from L to T and V, and to their parts
+LAGRANGE: Final = re.compile(
+    r"\\d?fracddt\\d?frac\\partial\w+\\partial\\dot.*?-\\d?frac\\partial\w+\\partial\\?\w+"
+)
+RESTING: Final = ("0", "e", "eq")  # indices of a length or an angle at rest
 
 
 @dataclass(frozen=True)
@@ -88,6 +104,8 @@ def motion_specification(paper: Paper, title: str) -> str:
             message = f"no equation of motion is read; {found.gaps[0]}"
         hint = r"derivatives are \dot{x}, x'' or \frac{d^2 x}{dt^2}; signals in s are X(s)"
         raise refusal(span, message, hint)
+    if not is_field and (lagrangian := _lagrangian(paper, found)) is not None:
+        return _energy_text(found, title, lagrangian, paper)
     return _field_text(found, title) if is_field else _text(found, title)
 
 
@@ -137,6 +155,8 @@ def _take(
 ) -> None:
     typed = [t.text for t in equation.tokens]
     rows = _rows(sides[0], sides[-1])
+    # Of w(0) = w'(0) = 0, each is a condition.
+    rows += [row for side in sides[1:-1] if _is_placed(side) for row in _rows(side, sides[-1])]
     if not rows and not is_inline:
         found.gaps.append(f"line {equation.span.line} has sides of different sizes: {_comment(equation)}")
     for left, right in rows:
@@ -147,8 +167,7 @@ def _take(
         moving = any(isinstance(n, Derivative) for n in held)
         if notation.motion != "time":
             moving |= any(isinstance(n, Name) and n.name == LAPLACE for n in held)
-        placed = any(isinstance(n, Call) and n.name not in FUNCTIONS for n in held)
-        if (moving or placed) and not is_inline:
+        if (moving or _is_placed(left) or _is_placed(right)) and not is_inline:
             found.equations.append(one)
         elif defined_symbol(equation) is not None and isinstance(left, Name) and not _is_value(right):
             found.definitions.setdefault(left.name, (right, equation))
@@ -167,6 +186,11 @@ def _is_timed(following: Sequence[str]) -> bool:
         and after.startswith(("t)", "s)"))
         and re.fullmatch(r"\}*(_(\w|\{\w+\}))?\}*", before) is not None
     )
+
+
+def _is_placed(side: Value) -> bool:
+    """Tell whether a side has a field at a point."""
+    return any(isinstance(n, Call) and n.name not in FUNCTIONS for e in _entries(side) for n in names(e))
 
 
 def _is_value(expression: Expression) -> bool:
@@ -203,6 +227,70 @@ def _named(expressions: Iterable[Expression]) -> dict[str, None]:
         for n in names(e)
         if isinstance(n, Name | Derivative) and n.name != LAPLACE
     )
+
+
+def _lagrangian(paper: Paper, found: _PaperMotion) -> Expression | None:
+    """Return L, where the paper derives it and says what it is; ``None`` for equations written out."""
+    displayed = [text_of(d.tokens) for d in paper.displays]
+    if not any(r"\partialL}{\partial\dot" in text.replace(r"\mathcal{L}", "L") for text in displayed):
+        return None
+    said = {one.left.name: one.right for one in found.equations if isinstance(one.left, Name)}
+    said |= {name: value for name, (value, _) in found.definitions.items()}
+    lagrangian = next((said[name] for name in ("L", "Lcal") if name in said), None)
+    for _ in range(ENERGIES):
+        lagrangian = lagrangian and substitute(lagrangian, said)
+    return lagrangian
+
+
+def _forces(paper: Paper, gaps: list[str]) -> dict[str, str]:
+    """Return what acts on each coordinate: the symbol that is alone on the right of Lagrange's equation."""
+    found: dict[str, str] = {}
+    notation = PaperNotation({PrintedSymbol("s"): LAPLACE}, motion="time")
+    for equation in (e for d in paper.displays if d.problem is None for e in statements(d.tokens)):
+        left, texts = equation.sides[0], [t.text for t in equation.sides[0]]
+        if r"\partial" not in texts or r"\dot" not in texts or len(equation.sides) == 1:
+            continue
+        moving = left[texts.index(r"\dot") :]
+        try:
+            coordinate = read_value(moving[: group_end(moving, 1)], notation)
+            force = read_value(equation.sides[-1], notation)
+        except SpecError as error:
+            gaps.append(f"line {equation.span.line} is not read: {error.diagnostics[0].message}")
+            continue
+        if isinstance(coordinate, Derivative) and isinstance(force, Name):
+            found[coordinate.name] = force.name
+        elif not (isinstance(force, Expression) and is_number(force, 0)):
+            gaps.append(f"line {equation.span.line}: what acts is not read: {_comment(equation)}")
+        if LAGRANGE.fullmatch(re.sub(r"\\(left|right|mathrm)\b|[(){}\[\]]", "", text_of(left))) is None:
+            said = "has more than the derivatives of L; add it to forces or dissipation"
+            gaps.append(f"line {equation.span.line} {said}: {_comment(equation)}")
+    return found
+
+
+def _energy_text(found: _PaperMotion, title: str, lagrangian: Expression, paper: Paper) -> str:
+    """Return a specification with the energies of a paper, from which Lagrange's equations are derived."""
+    everything = _named([lagrangian])
+    coordinates = list(dict.fromkeys(n.name for n in names(lagrangian) if isinstance(n, Derivative)))
+    parameters = [name for name in everything if name not in (*coordinates, "pi")]
+    found.gaps = [gap for gap in found.gaps if r"\partial" not in gap]
+    forces = _forces(paper, found.gaps)
+    acting = {name: force for name, force in forces.items() if name in coordinates}
+    lines = [*_heading(found, title)]
+    if not acting:
+        lines.append(f"{GAP} no input was found: add what acts to forces and to [inputs]")
+    lines += [
+        *_parameters(parameters),
+        "",
+        "# L, with its sign: potential energy is subtracted in it",
+        "[energy]",
+    ]
+    lines.append(f"coordinates = [{', '.join(map(_quoted, coordinates))}]")
+    lines.append(f"kinetic     = {_quoted(format_expression(lagrangian))}")
+    if acting:
+        lines.append(f"forces      = {{ {', '.join(f'{q} = {_quoted(f)}' for q, f in acting.items())} }}")
+    lines += ["", f"{GAP} rest at zero is assumed here", "[operating_point]"]
+    lines += [f'{name} = "0"' for name in (*coordinates, *acting.values())]
+    return "\n".join([*lines, *_ends(coordinates, list(dict.fromkeys(acting.values()))), ""])
 
 
 def _laplace_text(paper: Paper, title: str) -> str | None:
@@ -307,8 +395,8 @@ def _inputs(
 ) -> Iterator[str]:
     """Yield what acts: functions of time that are no unknowns, and what stands alone in a term."""
     moving = [t for one in found.equations for t in one.terms if set(_named([t])) & set(unknowns)]
+    chosen = dict.fromkeys(_like_unknowns(moving, unknowns))
     beside = set(_named(moving))
-    chosen: dict[str, None] = {}
     for one in found.equations:
         for term in one.terms:
             held = [n for n in _named([term]) if n not in (*kept, *CONSTANT)]
@@ -333,6 +421,18 @@ def _inputs(
                 )
     yield from chosen
     yield from (n for n in everything if n in found.timed and n not in unknowns and n not in chosen)
+
+
+def _like_unknowns(terms: Iterable[Expression], unknowns: Sequence[str]) -> Iterator[str]:
+    """Yield what is added to an unknown and named like one, such as the road z_r in k_t*(z_u - z_r)."""
+    stems = {name.partition("_")[0] for name in unknowns}
+    for part in (node for term in terms for node in nodes(term) if isinstance(node, Sum)):
+        bare = [term.operand if isinstance(term, Negative) else term for term in part.terms]
+        added = [one.name for one in bare if isinstance(one, Name | Derivative)]
+        for name in added if set(added) & set(unknowns) else ():
+            stem, _, index = name.partition("_")
+            if name not in unknowns and stem in stems and index not in RESTING:
+                yield name
 
 
 # --- fields ---

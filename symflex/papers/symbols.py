@@ -496,13 +496,10 @@ class SymbolReader:
 
     def remember(self, name: str, start: int) -> None:
         """Refuse a second symbol that is typed otherwise and would have the same name."""
-        kept = [
-            t.text
-            for i, t in enumerate(self.tokens[start : self.at])
-            if t.text not in "{}_^" and (t.text not in FONTS or not i)
-        ]
+        kept = [t.text for t in self.tokens[start : self.at] if t.text not in "{}_^"]
         if self.notation.motion:  # derivatives are no other symbols
             kept = [text for text in kept if ACCENTED.get(text) not in DOTS and text not in PRIMES]
+        kept = [text for i, text in enumerate(kept) if text not in FONTS or not i]
         typed = " ".join(sorted(kept))
         if not self.bound and self.typed.setdefault(name, typed) != typed:
             message = f"two symbols would both be '{name}' here: {self.typed[name]} and {typed}"

@@ -127,3 +127,55 @@ def test_a_paper_without_motion_is_refused() -> None:
         specification(r"\[ G = \frac{1}{s} \]")
     with pytest.raises(SpecError, match="there are no equations of motion"):
         specification(r"\[ \frac{X(s)}{F(s)} = \frac{1}{ms^2+k} \]")
+
+
+def test_a_road_that_stands_beside_an_unknown_is_an_input() -> None:
+    text = specification(
+        r"\begin{align} m_s\ddot z_s &= -k_s(z_s - z_u) \\"
+        r" m_u\ddot z_u &= k_s(z_s - z_u) - k_t(z_u - z_r) \end{align}"
+    )
+    assert loads(text).transfer_functions == (("Z_s", "z_r"), ("Z_u", "z_r"))
+
+
+def test_a_chain_of_conditions_gives_each_of_them() -> None:
+    text = specification(
+        r"\[ EI\frac{\partial^4 w}{\partial x^4} + \mu\frac{\partial^2 w}{\partial t^2} = 0 \]"
+        r"\[ w(0,t) = w''(0,t) = 0, \quad w(l,t) = u(t), \quad w''(l,t) = 0 \]"
+    )
+    assert equations(text) == ["w(0) = 0", "w''(0) = 0", "w(l) = u", "w''(l) = 0"]
+
+
+def test_vectors_in_bold_are_the_same_below_dots() -> None:
+    text = specification(
+        r"\[ \mathbf{M}\ddot{\mathbf{q}} + \mathbf{K}\mathbf{q} = \mathbf{f} \]"
+        r"\[ \mathbf{M} = \begin{bmatrix} m & 0 \\ 0 & J \end{bmatrix},"
+        r" \mathbf{K} = \begin{bmatrix} k & -c \\ -c & d \end{bmatrix},"
+        r" \mathbf{q} = \begin{bmatrix} x \\ y \end{bmatrix},"
+        r" \mathbf{f} = \begin{bmatrix} F \\ 0 \end{bmatrix} \]"
+    )
+    assert equations(text) == ["m*x'' + k*x - c*y = F", "J*y'' - c*x + d*y = 0"]
+
+
+CRANE = r"""\begin{align}
+T &= \tfrac12 M\dot x^2 + \tfrac12 m(\dot x^2 + 2l\dot x\dot\theta\cos\theta + l^2\dot\theta^2), \\
+V &= -mgl\cos\theta. \end{align} With $L = T - V$,
+\[ \frac{d}{dt}\left(\frac{\partial L}{\partial \dot{x}}\right) - \frac{\partial L}{\partial x} = F, \qquad
+\frac{d}{dt}\left(\frac{\partial L}{\partial \dot\theta}\right) - \frac{\partial L}{\partial \theta} = 0 \]"""
+
+
+def test_lagranges_equations_become_energies() -> None:
+    # By hand: M l s^2 + (M + m) g below, and l s^2 + g above for the trolley.
+    text = specification(CRANE)
+    model = loads(text)
+    assert model.transfer_functions == (("X", "F"), ("Theta", "F"))
+    assert 'coordinates = ["x", "theta"]' in text
+    assert [line for line in text.splitlines() if "GAP: line" in line] == []
+
+
+def test_friction_beside_lagranges_terms_is_a_gap() -> None:
+    text = specification(
+        r"\[ L = \frac12 ml^2\dot\theta^2 + mgl\cos\theta \]"
+        r"\[ \frac{d}{dt}\frac{\partial L}{\partial\dot\theta} - \frac{\partial L}{\partial\theta}"
+        r" + b\dot\theta = \tau \]"
+    )
+    assert "GAP: line 1 has more than the derivatives of L; add it to forces or dissipation" in text
