@@ -18,10 +18,9 @@ from flint import arb
 from symflex.balls import ball, precision
 from symflex.loops.axis import AxisRoots, LoopAtOrigin, find_on_axis
 from symflex.loops.loop_function import LoopValue
-from symflex.loops.stability_map import Crossing
+from symflex.loops.stability_map import BITS, Crossing
 from symflex.roots.root import hertz
 
-BITS = 128  # precision of gains and their limits
 SHRINKINGS = 30  # halvings of a disc about 0
 NOT_PROVED_AT_ZERO = "the motion of poles next to s = 0 is not proved"
 WIDER = 16.0  # by how much a disc about 0 is widened

@@ -25,7 +25,7 @@ from symflex.loops.axis_search import NEXT_TO_ZERO, NOT_PROVED_AT_ZERO, SHRINKIN
 from symflex.loops.gain_functions import GainFunctions
 from symflex.loops.loop import GainPolynomial, Loop, independent
 from symflex.loops.loop_function import LoopFunction
-from symflex.loops.stability_map import Crossing, PoleCount
+from symflex.loops.stability_map import BITS, Crossing, PoleCount
 from symflex.loops.two_unknowns import GainTree, PartsAlong, find_axis_points, left
 from symflex.roots.counting.winding import RootOnAxisError, RootOnPathError
 from symflex.roots.degenerate import DegeneratePoints, degenerate_points
@@ -43,7 +43,6 @@ from symflex.transfer.enclose import first_order
 
 GainValue = Callable[[arb], arb_series]
 
-BITS = 128  # precision of gains and their limits
 OUTWEIGHED = (ADVANCED, NEUTRAL, DELAY_LEADS)  # what is said where delayed terms leave poles without a bound
 HALVINGS = 12  # halvings of a range: its end is then known to a few hundredths of the nominal gain
 SLIVER = 40  # halvings of a range: what is left may be missing at an end of it

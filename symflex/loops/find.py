@@ -31,6 +31,7 @@ from symflex.loops.loop_function import LoopFunction, LoopValue
 from symflex.loops.lumped import LumpedFactor
 from symflex.loops.networks import AnyLoop, NetworkFactors, NetworkLoop
 from symflex.loops.stability_map import (
+    BITS,
     AllowedCrossover,
     Boundary,
     Crossing,
@@ -54,7 +55,6 @@ BRANCH = "stable gains are searched where the branch point is s = 0, and not whe
 NARROW_BITS = 20  # relative accuracy of a range of gains that is not worth a word
 GUARD_DIGITS = 6  # beyond those printed
 SAMPLE_BITS = (6, 12, 24, 48, 96, 192, 384, 768)  # bits of gains between boundaries: the fewest that do
-BITS = 128  # of gains
 NEXT_TO_ZERO = 2**20  # by what the first boundary is divided where poles of a small gain are counted
 AnyFactors = DistributedFactors | NetworkFactors
 

@@ -25,14 +25,13 @@ from symflex.loops.networks import AnyLoop, LoopInDisc, NetworkLoop
 from symflex.model import ExactValue
 from symflex.roots import Band, Modes, PoleZeroMap, Position, Region, Root
 from symflex.roots.functions.simplified import with_parts
-from symflex.roots.locate import locate
+from symflex.roots.locate import DEFAULT_MODES, locate
 from symflex.roots.pole_zero_map import Exclusion, is_right
 from symflex.transfer import BoundTransferFunction
 from symflex.transfer.equations_at import EssentialSingularityError
 
 Traceable = LoopFunction | LoopInDisc  # what poles are followed in
 Branch = tuple[complex, ...]  # a curve [rad/s] along which a pole goes
-DEFAULT_MODES = 5
 STEPS = 120  # gains in all, close at the beginning: a step is then 10 % longer than the last
 FIRST_SHARE = 1e-5  # the first step, of the whole range
 NEWTON_STEPS = 25

@@ -35,6 +35,7 @@ from symflex.loops.stability_map import Crossing, PoleCount
 from symflex.model import Model, ModelParameter
 from symflex.roots import PoleZeroMap, Region
 from symflex.roots.counting.local_series import LocalSeries
+from symflex.roots.locate import DEFAULT_MODES
 from symflex.roots.networks.at_rest import order_at_zero
 from symflex.roots.networks.cramer import CramerEquations
 from symflex.roots.networks.disc_search import DiscSearch, enclosed_roots, images
@@ -44,7 +45,6 @@ from symflex.roots.networks.poles_zeros import locate_quotient
 from symflex.roots.passivity import EnergyProof, energy_proof
 from symflex.transfer.equations_at import EquationsAt, EssentialSingularityError, holds
 
-DEFAULT_MODES = 5  # which the disc contains where no frequency is given
 DIGITS = 15  # of poles that are marked in figures
 LOOP_GAIN_BITS = 64  # of values that are drawn
 WIDER = 1.05  # radius of the disc of series over the frequency up to which poles are searched

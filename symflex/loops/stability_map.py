@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from symflex.loops.peak import LoopPeaks
 
 SCHEMA = "symflex.stability/1"
-BITS = 128
+BITS = 128  # precision of gains and their limits
 NOTHING_APART = PolesApart()
 NO_NOMINAL = "the gain has no value"
 MOST_BOUNDARIES = 10  # printed: as many as are seen at once; --all prints all

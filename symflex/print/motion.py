@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from flint import arb
 
 from symflex.expressions import Equation, format_expression
+from symflex.print.text import WIDTH
 
 if TYPE_CHECKING:
     from symflex.model import Model
@@ -24,7 +25,6 @@ SOLVED = "solved at equilibrium: "
 DIGITS = 6  # of values in a terminal
 JSON_DIGITS = 15
 MATRICES = ("mass", "damping", "stiffness")
-WIDTH = 80  # columns of a terminal
 
 
 def motion_json(model: Model) -> dict[str, object]:

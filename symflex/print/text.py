@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from symflex.print.forms import PrintedForm
     from symflex.transfer import AnyTransferFunction
 
-WIDTH = 80
+WIDTH = 80  # columns of a terminal
 INDENT = "  "
 NARROWEST = 12  # columns below which breaking a line further would not help to read it
 SHALLOW = 8  # columns up to which a broken sum stands to the right of its parenthesis

@@ -34,7 +34,7 @@ from symflex.loops.boxes import BITS, Box, CharacteristicFunction, share_taken
 from symflex.model import ExactValue
 from symflex.roots import Band, Everything, Modes, Region, Root
 from symflex.roots.counting.argument_principle import CertifiedWinding
-from symflex.roots.counting.winding import RootOnPathError
+from symflex.roots.counting.winding import WIDENED, RootOnPathError
 from symflex.roots.functions.characteristic import CharacteristicValues
 from symflex.roots.functions.exponential_values import Place
 from symflex.roots.functions.kernel_function import SERIES_TERMS, KernelFunction
@@ -57,7 +57,6 @@ POINTS = 4  # from which those at the next are foretold
 STEPS = 4  # between points that one proof is tried for at first
 LOOKS = 30  # parts of a contour that one step is worth; to count the roots at a point takes as long
 PARTS = 4  # into which a contour is cut at first, and as many for every root
-WIDENED = 1 + 2.0**-40  # makes up for the rounding of angles
 
 
 @dataclass(frozen=True, slots=True)

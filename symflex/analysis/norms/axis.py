@@ -27,6 +27,8 @@ from symflex.roots.root import Root, overlap
 from symflex.transfer import BoundTransferFunction
 
 RATIO = 1.12  # of the ends of first pieces
+MOST_PIECES = 20_000  # of the axis
+NARROWEST = 1e-12  # relative width of a piece that is not halved any more
 ORDER = 6  # powers of a form in a disc
 CIRCLE_POINTS = 14  # values that make the powers of a form beyond, and their number
 REACHES = (8, 2)  # radii of the discs about a piece beyond that are tried, over half the piece

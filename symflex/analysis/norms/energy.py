@@ -20,7 +20,7 @@ from math import inf
 
 from flint import acb, arb, arb_poly
 
-from symflex.analysis.norms.axis import RATIO, MatrixOnAxis, TaylorForm
+from symflex.analysis.norms.axis import MOST_PIECES, NARROWEST, RATIO, MatrixOnAxis, TaylorForm
 from symflex.analysis.norms.expanded import BITS, Expanded, expanded
 from symflex.balls import Branching, Open, Part, branch, halved, precision, settled
 from symflex.errors import BudgetError, Diagnostic, Source, UncertifiedError
@@ -40,9 +40,7 @@ NOISE, SHAPED = "white_noise", "shaped_noise"  # names in a model of what shapes
 SCHEMA = "symflex.h2/1"
 DIGITS = 6  # of an integral
 PRINTED = 12  # of a rational function's norm
-MOST_PIECES = 20_000
 FURTHER, STEP = 45, 2.0  # frequencies from which on a bound is tried
-NARROWEST = 1e-12  # relative width of a piece that is not halved any more
 MODES = 8  # whose poles lie in the disc about 0, at first
 SLOW, SLOW_TAIL = -1.5, 1e-3  # power above which so large a share is left beyond the last frequency
 SLOWEST = -0.5  # power of the frequency below which a square has an integral

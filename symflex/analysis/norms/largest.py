@@ -19,20 +19,18 @@ import numpy as np
 import numpy.typing as npt
 from flint import acb, acb_mat, arb
 
-from symflex.analysis.norms.axis import RATIO, MatrixOnAxis, TaylorForm, norm
+from symflex.analysis.norms.axis import MOST_PIECES, NARROWEST, RATIO, MatrixOnAxis, TaylorForm, norm
 from symflex.analysis.norms.expanded import BITS
 from symflex.balls import Branching, Open, Part, branch, halved, precision
 from symflex.loops.axis import ball_of, joined, pieces
 from symflex.roots.root import short_hertz
 
 WIDTH = 1e-3  # relative distance of the bounds
-MOST_PIECES = 20_000
 SQUARINGS = 23  # of a matrix, whose trace is its largest eigenvalue's power then but for 1e-7
 NEAR = 1e-6  # relative half width of a piece at a pole's frequency, where a large value is met first
 NODES = 6  # on each side of the middle of a piece
 FURTHER, STEP = 40, 2.0  # frequencies from which on a bound is tried
 MOST_TURNS = 200  # of entries against each other by delays up to such a frequency
-NARROWEST = 1e-12  # relative width of a piece that is not halved any more
 
 
 @dataclass(frozen=True, slots=True)

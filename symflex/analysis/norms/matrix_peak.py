@@ -14,7 +14,7 @@ from math import inf, pi
 from flint import arb
 
 from symflex.analysis.norms.axis import MatrixOnAxis
-from symflex.analysis.norms.energy import matrix_name
+from symflex.analysis.norms.energy import MODES, matrix_name
 from symflex.analysis.norms.expanded import BITS, Expanded, expanded, turning_delays
 from symflex.analysis.norms.largest import largest_gain
 from symflex.balls import ball, precision
@@ -23,7 +23,6 @@ from symflex.options import Ends, band_ends
 from symflex.roots import Band, Position, figure
 from symflex.transfer import AnyBoundFunction
 
-MODES = 8  # whose poles lie in the disc about 0
 WIDTH = 1e-6  # relative distance of the bounds
 DIGITS = 8
 SINGULAR, MET = "largest singular value", "largest singular value found"

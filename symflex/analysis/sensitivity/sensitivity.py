@@ -33,7 +33,12 @@ from symflex.algebra.vanishing import OriginSeries
 from symflex.along.law import BoundLaw
 from symflex.along.matrices import VaryingMatrices
 from symflex.along.minors import MinorSums
-from symflex.analysis.sensitivity.of_equations import SingularMatrix, derivatives, is_fixed_at_zero
+from symflex.analysis.sensitivity.of_equations import (
+    MOST_TIMES,
+    SingularMatrix,
+    derivatives,
+    is_fixed_at_zero,
+)
 from symflex.balls import Arithmetic, EvaluationPlan, Value, bits_for_digits, plan, precision, precisions
 from symflex.budget import spend
 from symflex.expressions import Call, Expression
@@ -175,9 +180,6 @@ def _complex_json(value: acb | None, digits: int) -> dict[str, str] | None:
         return None
     printed = decimals(value.real, value.imag, digits)
     return {"re": printed.re, "im": printed.im, "radius": printed.radius}
-
-
-MOST_TIMES = 8  # the first precision; beyond it, rounding is not why something is not known
 
 
 def differentiate(

@@ -22,7 +22,7 @@ from flint import acb, acb_poly, acb_series, arb
 from symflex.balls import ball, precision, series_terms, stays_inside
 from symflex.budget import spend
 
-GUARD_BITS = 64
+GUARD_BITS = 64  # what the elimination of a network loses mostly; where it loses more, more are taken
 MOST_TIMES_BITS = 8  # largest factor on the precision of a series to separate its roots
 SMALLEST_ARC = 2.0**-11  # shortest arc of a circle that is followed [rad]; below, a root counts as on it
 BISECTIONS = 60

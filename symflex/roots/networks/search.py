@@ -18,13 +18,13 @@ from flint import arb
 
 from symflex.balls import Branching, Open, UndecidedError, bits_for_digits, branch, precision, precisions
 from symflex.budget import spend
+from symflex.roots.networks.disc_series import GUARD_BITS
 
 if TYPE_CHECKING:
     from symflex.roots.networks.counting import Counter, NetworkSample
 
     Between = tuple[NetworkSample, NetworkSample]
 
-GUARD_BITS = 64  # what the elimination of a network loses mostly; where it loses more, more are taken
 PATIENCE = 3  # secants that may leave most of an interval before it is halved
 NEAR = 1e-3  # relative width of an interval in which secants begin
 NUDGE = 2.0**-20  # parts of an interval by which a point moves that is an eigenvalue itself
