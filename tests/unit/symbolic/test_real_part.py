@@ -50,3 +50,16 @@ def test_a_force_along_the_motion_needs_more_friction():
 def test_an_integral_of_position_is_never_positive_at_low_frequencies():
     # Re Z = b - K/omega^2.
     assert conditions("-K/s*x") == ("the real part is never positive at all frequencies", [])
+
+
+def test_a_condition_on_a_middle_power_is_enough_and_not_needed():
+    # (1 + omega^2 tau^2)^2 Re Z = b + B - 2 K tau + (2 b - B) omega^2 tau^2 + b omega^4 tau^4.
+    assert conditions("-(K + B*s)/(tau*s + 1)^2*x") == (
+        "the real part is positive at all frequencies if",
+        ["2*b > B", "b + B > 2*K*tau"],
+    )
+
+
+def test_a_factor_that_comes_with_its_mirror_image_is_positive_with_it():
+    # (1 + omega^2 tau^2) Re Z = b (k^2 + omega^2 tau^2), the size of k + j omega tau.
+    assert conditions("-b*(k^2 - 1)/(tau*s + 1)*s*x") == ("the real part is positive at all frequencies", [])

@@ -7,7 +7,9 @@ import pytest
 import sympy
 
 import symflex
+from symflex import pipeline
 from symflex.errors import SymflexError
+from symflex.symbolic.routh import conditions_of
 from tests.independent import eppinger1988
 
 # The letters, the loop that is closed, and its characteristic polynomial.
@@ -280,3 +282,19 @@ def test_no_sign_is_assumed_of_a_definition_that_may_be_negative(formula, expect
     tables = {"definitions": {"c": formula}, "signals": signals, "inputs": {"u": {}}, "outputs": {"Y": "y"}}
     found = model_of("m b k_1 k_2 k_3 a", **tables).conditions()
     assert [str(c) for c in found.conditions] == expected
+
+
+def test_a_factor_of_two_polynomials_is_counted_twice():
+    # m s^2 + k and itself, multiplied: both roots on the axis are double.
+    model = pipeline.loads(
+        """symflex = 1
+parameters = { m = {}, k = {} }
+elements.body = { type = "mass", at = "x", m = "m" }
+elements.wall = { type = "spring", between = ["x", "ground"], k = "k" }
+inputs.F = { force = "x" }
+outputs.X = "x"
+"""
+    )
+    (tf,) = pipeline.derive_all(model)
+    factors = [*tf.den.factors]
+    assert conditions_of(tf, "poles", [*factors, *factors]).on_axis == (("m*s^2 + k", 2),)
