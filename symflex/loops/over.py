@@ -63,6 +63,14 @@ MOST_PARTS = 64  # open parts side by side beyond which poles stay on the axis w
 MOST_GAPS = 1000  # open parts side by side beyond which a pole touches the axis, or stays on it
 
 
+def _check_dependence(function: CharacteristicFunction, parameters: Iterable[ModelParameter]) -> None:
+    for parameter in parameters:
+        if not function.depends_on(parameter.name):
+            message = f"no pole of the model depends on '{parameter.name}'"
+            hint = f"for every value of it the poles are the same: ask without --over {parameter.name}"
+            raise ModelError(Diagnostic("SF801", message, parameter.span, hint))
+
+
 def stability_over(
     model: Model, given: StabilityOptions, values: Mapping[str, Given] | None = None
 ) -> StabilityMap | StabilityChart:
@@ -88,11 +96,7 @@ def stability_over(
     if exact is not None and exact.certified:
         return exact.of_parameter
     function = characteristic(model, names, limits, has_complex_waves=True)
-    for parameter in parameters:
-        if not function.depends_on(parameter.name):
-            message = f"no pole of the model depends on '{parameter.name}'"
-            hint = f"for every value of it the poles are the same: ask without --over {parameter.name}"
-            raise ModelError(Diagnostic("SF801", message, parameter.span, hint))
+    _check_dependence(function, parameters)
     end = _end_inside(function, limits)
     is_endless = isinstance(end, str) and end != VANISHES and PolesUpTo.serves(function)
     if len(names) > 1:

@@ -236,6 +236,17 @@ def _element_type(reader: Reader, table: TableValue, entry: KeyValue) -> Element
     return element
 
 
+def _other_count(port: Port, texts: Sequence[Text], wanted: int) -> str | None:
+    """Return what to do where a port has more nodes or fewer than it takes."""
+    if len(texts) < wanted:
+        given = [text.value[:60] for text in texts] or ["..."]
+        ends = ", ".join(f'"{name}"' for name in (*given, *["ground"] * (wanted - len(given))))
+        return f'{RESTS.get(port.domain, "an end that does not move")} is at "ground": [{ends}]'
+    if port.reacts:
+        return f'two nodes at most, the second for the reaction: {port.name} = ["a", "b"]'
+    return f"two nodes are written {port.pair} = [...]" if port.pair else None
+
+
 def _references(
     reader: Reader, table: TableValue, port: Port, entry: KeyValue, element: Element, meant: frozenset[str]
 ) -> tuple[NodeReference, ...] | None:
@@ -265,16 +276,8 @@ def _references(
     if port.reacts and len(texts) == 2:  # noqa: PLR2004
         wanted = 2
     if len(texts) != wanted:
-        hint = f"two nodes are written {port.pair} = [...]" if port.pair else None
-        if port.reacts:
-            hint = f'two nodes at most, the second for the reaction: {port.name} = ["a", "b"]'
-        if len(texts) < wanted:
-            given = [text.value[:60] for text in texts] or ["..."]
-            ends = ", ".join(f'"{name}"' for name in (*given, *["ground"] * (wanted - len(given))))
-            rests = RESTS.get(port.domain, "an end that does not move")
-            hint = f'{rests} is at "ground": [{ends}]'
         message = f"{what} takes {counted(wanted, 'node')}, found {len(texts)}"
-        reader.note("SF217", message, entry_given.value.span, hint)
+        reader.note("SF217", message, entry_given.value.span, _other_count(port, texts, wanted))
         return None
     references = [read_reference(reader, t, port.domain, what) for t in texts]
     kept = tuple(r for r in references if r is not None)

@@ -12,7 +12,7 @@ gives T. The curve is put into the characteristic function, in balls at random v
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
@@ -65,6 +65,18 @@ from symflex.transfer.of_model import derive_all
 TINY = 2.0**-64  # radius of a value of the characteristic function on its boundary, where it vanishes
 
 
+def _lines_at_rest(
+    tf: TransferFunction, moving: fmpz_mpoly, over: Sequence[str]
+) -> Iterator[SymbolicRelation]:
+    """Yield where a pole is at 0: delays are 1 there."""
+    ring = tf.ratio.ring
+    at_rest = {k.generator: ring.constant(1) for k in tf.kernels.kernels} | {LAPLACE: ring.constant(0)}
+    arranger, turns = Arranger.plain(ring, constant_symbols(tf)), SumSigns.of(tf.model)
+    for factor, _ in irreducible_factors(ring.replaced(moving, at_rest))[1]:
+        if ring.used_in((factor,)) & {*over}:
+            yield relation_of(arranger, factor, "=", turns)
+
+
 def boundary(model: Model, over: Sequence[str]) -> Conditions:
     """Return the boundary of stability over two parameters in symbols; SF801 if there is no formula."""
     check_causal(model, "a symbolic boundary")
@@ -110,11 +122,7 @@ def boundary(model: Model, over: Sequence[str]) -> Conditions:
     curve = [SymbolicRelation(n, "=", sides if n <= LONGEST else None) for n, sides in both]
     curve += [SymbolicRelation(1, "=", (Name(name), e)) for name, e in where]
     if not any(d.wavenumbers for d in tf.kernels.dispersions):
-        at_rest = {k.generator: ring.constant(1) for k in tf.kernels.kernels} | {LAPLACE: ring.constant(0)}
-        factors = irreducible_factors(ring.replaced(moving[0], at_rest))[1]
-        arranger = Arranger.plain(ring, constant_symbols(tf))
-        shown_over = (f for f, _ in factors if ring.used_in((f,)) & {*over})
-        curve += [relation_of(arranger, f, "=", SumSigns.of(model)) for f in shown_over]
+        curve += _lines_at_rest(tf, moving[0], over)
     said = f"boundary over {gain} and {other}: a pole on the imaginary axis{turns}"
     return Conditions(model, "boundary", said, tuple(curve))
 
