@@ -477,6 +477,7 @@ def _check(tf: TransferFunction, signs: Signs, moving: Sequence[Factor], found: 
     def value(polynomial: fmpz_mpoly) -> acb:
         return acb(summed(terms_of(polynomial), ring.names, known.__getitem__, acb(1)))
 
+    scales = dict[int, int]()  # what is shown may lack a whole number, the same at all points
     for _ in range(POINTS):
         for n in ring.names:
             size = random.randrange(1, 2 ** random.randrange(2, 9))
@@ -485,13 +486,17 @@ def _check(tf: TransferFunction, signs: Signs, moving: Sequence[Factor], found: 
             known["pi"] = acb.pi()
             known |= {c.generator: read(c.expression, known.__getitem__) for c in tf.constants}
             holds, wrong = True, ""
-            for polynomial, shown in found:
+            for i, (polynomial, shown) in enumerate(found):
                 left_side, sides = (
                     value(polynomial),
                     [read(side, known.__getitem__) for side in shown.sides or ()],
                 )
                 holds &= bool(left_side.real > 0 if shown.sign == ">" else left_side != 0)
-                wrong = str(shown) if sides and not left_side.overlaps(sides[0] - sides[1]) else wrong
+                difference = sides[0] - sides[1] if sides else left_side
+                if i not in scales and not difference.contains(0):
+                    ratio = (left_side / difference).real.unique_fmpz()
+                    scales[i] = max(1, int(ratio)) if ratio is not None else 1
+                wrong = wrong if left_side.overlaps(scales.get(i, 1) * difference) else str(shown)
             placed = [_is_placed([*map(value, ring.coefficients(f))][::step], step) for f, step in moving]
         if wrong or (None not in placed and holds != all(placed)):
             message = f"conditions are not shown, as they are wrong: {wrong or known}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final
 
 from symflex.errors import counted
@@ -23,7 +23,7 @@ class Finding:
 
     verdict: Verdict  # ``holds``, ``holds with a condition``, ``does not hold`` or ``not examined``
     evidence: tuple[Run, ...]  # the numbers it rests on, or why nothing was examined
-    missing: tuple[str, ...] = ()  # models that it needs and the report does not include
+    missing: tuple[str, ...] = field(default=(), repr=False)  # models that it needs, not in the report
 
 
 @dataclass(frozen=True, slots=True)
