@@ -321,9 +321,12 @@ SYMBOLS: Final[dict[str, ElementSymbol]] = {  # symbols by the type of an elemen
         24.0, "line 0,0 .32,0; line .72,3.6 .32,3.6 .32,-3.6 .72,-3.6; line .52,0 1,0; 1.2 .52,2.5 .52,-2.5"
     ),
     "torsion_spring": ElementSymbol("branch", torsion_spring, 28.0),
-    # A disc in a housing.
+    # Two discs with oil between them.
     "rotary_damper": branch(
-        24.0, "bold 0,0 .3,0; line .7,4.6 .3,4.6 .3,-4.6 .7,-4.6; bold .55,0 1,0; 2.0 .55,3 .55,-3"
+        24.0,
+        "bold 0,0 .5-3,0; 1.6 .5-3,-5.5 .5-3,5.5; 1.6 .5+3,-5.5 .5+3,5.5; bold .5+3,0 1,0; "
+        "thin .5-1.6,-4 .5+1.6,-4; thin .5-1.6,-2 .5+1.6,-2; thin .5-1.6,0 .5+1.6,0; "
+        "thin .5-1.6,2 .5+1.6,2; thin .5-1.6,4 .5+1.6,4",
     ),
     **dict.fromkeys(("resistor", "acoustic_resistance", "thermal_resistance"), _RESISTOR),
     **dict.fromkeys(("inductor", "acoustic_mass"), ElementSymbol("branch", inductor, 26.0)),
