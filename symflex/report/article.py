@@ -36,6 +36,8 @@ from symflex.report.report import Report
 OVERVIEW: Final = "models"  # anchor of the section that follows the table of contents on its page
 HEADINGS: Final = ("section", "subsection", "subsubsection", "paragraph")
 CONTENTS_DEPTH: Final = 1
+# Blanks of typewriter type do not stretch, so that lines with several of them would be loose elsewhere.
+BLANKS: Final = r"\spaceskip=.5em plus .4em minus .1em\relax"
 
 _PACKAGES: Final = r"""
 \usepackage{graphicx}
@@ -227,7 +229,7 @@ def _run(run: Run) -> str:
         case Mathematics(latex=latex):
             return f"${latex}$"
         case Code(text=text):
-            return rf"\texttt{{{_breakable(text)}}}"
+            return rf"{{\ttfamily{BLANKS} {_breakable(text)}}}"
         case Badge(text=text):
             return rf"\textbf{{{escape_text(text)}}}"
         case Aside(text=text):

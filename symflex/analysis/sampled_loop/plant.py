@@ -56,7 +56,8 @@ class PlantPulse:
         above, below = (ratio.ring.coefficients(f, ratio.ring.index[LAPLACE]) for f in sides)
         if len(above) > len(below):
             message = "what a sampled block sees grows with the frequency of what it holds"
-            raise ModelError(Diagnostic("SF236", message, self.machine.tf.output.span))
+            hint = "let it see a position in place of an acceleration, or put a low-pass in front of it"
+            raise ModelError(Diagnostic("SF236", message, self.machine.tf.output.span, hint))
         at_one = next(i for i, f in enumerate(below) if not f.is_zero())
         return above, below, at_one
 
