@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property, lru_cache
 from math import asin, exp, inf, lcm, pi
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from flint import acb, acb_series, arb, fmpz_mpoly
 
@@ -31,9 +31,6 @@ from symflex.roots.functions.reversal import is_reversed
 from symflex.roots.problem import is_complex
 from symflex.transfer import BoundTransferFunction
 from symflex.transfer.enclose_kernels import KernelValues
-
-if TYPE_CHECKING:
-    from symflex.roots.functions.sampled_sums import SampledSums
 
 FIRST_BITS = 64  # first precision of values; more if it does not suffice
 LAST_BITS = 4096  # largest precision: a value that is not settled with it is at a root
@@ -180,22 +177,8 @@ class KernelFunction:
 
     def at_logarithm(self, z: complex) -> Sample | None:
         """Return the sample at ``s = exp(z)``, with the slope in z; ``None`` on a root."""
-        sampled = None if self._doubles is None else self._doubles.at(z)
-        if sampled is not None:
-            self._spend(FIRST_BITS)
-            return Sample(self.power * sampled.log, self.power * sampled.slope)
         settled = self._settled(lambda: acb(z.real, z.imag).exp())
         return None if settled is None else self._sample(*settled)
-
-    @cached_property
-    def _doubles(self) -> SampledSums | None:
-        """What samples sums of exponentials in doubles; ``None`` where balls have to."""
-        if self.exponentials is None:
-            return None
-        from symflex.roots.functions.sampled_sums import SampledSums  # numpy is not needed without kernels
-
-        with precision(FIRST_BITS):
-            return SampledSums.of(self._sums(FIRST_BITS))
 
     def at_point(self, s: acb) -> Sample | None:
         """Return the sample at an exact ``s``, with the slope in ln(s)."""
