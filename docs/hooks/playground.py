@@ -39,7 +39,7 @@ SIGNS: Final = (
 )  # fmt: skip
 """Letters and signs of drawings beside those of ASCII."""
 MOMENT: Final = (1980, 1, 1, 0, 0, 0)
-"""Of all files in an archive, so that the same sources make the same bytes."""
+"""The date of all files in an archive, so that the same sources make the same bytes."""
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:

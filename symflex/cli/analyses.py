@@ -20,7 +20,7 @@ from symflex.cli.command import (
     names_in,
     refuse_ends,
 )
-from symflex.cli.reporting import answer, emit_json, judge, note, show_error, terminal_width, write
+from symflex.cli.reporting import answer, emit_json, note, say_coloured, show_error, terminal_width, write
 from symflex.errors import BudgetError, ModelError, refused
 from symflex.options import (
     ColocationOptions,
@@ -126,7 +126,7 @@ def roots(spec: Specification, given: RootsOptions) -> int:
         emit_json({**located.to_json_dict(), **{key: data for key, (data, _) in more.items()}})
     else:
         every = [roots_text(located, asked or SHORT_DIGITS, width), *(told for _, told in more.values())]
-        judge("\n".join(every[given.format == "latex" :]))
+        say_coloured("\n".join(every[given.format == "latex" :]))
     is_decided = (
         all(m.status != "undecided" for m in moved)
         and all(c.count is not None for c in clouds)
@@ -253,7 +253,7 @@ class Ranged(Command):
         """Read the arguments, those of a range with a name as of a range of its own."""
         named = [a == "--range" and _NAME.fullmatch(b) is not None for a, b in pairwise([*args, ""])]
         for i in (i for i, is_named in enumerate(named) if is_named):
-            if len(ends := args[i + 2 : i + 4]) < 2 or any(end.startswith("--") for end in ends):  # noqa: PLR2004
+            if len(ends := args[i + 2 : i + 4]) < 2 or any(end.startswith("--") for end in ends):  # noqa: PLR2004 (both)
                 message = f"'--range {args[i + 1]}' needs both ends: --range {args[i + 1]} LO HI"
                 raise click.BadOptionUsage("--range", message, ctx)
         plain = ["--range-of" if is_named else a for a, is_named in zip(args, named, strict=True)]

@@ -160,10 +160,10 @@ def answer(is_json: bool, document: Callable[[], Mapping[str, object]], text: Ca
     if is_json:
         emit_json(document())
     else:
-        judge(text())
+        say_coloured(text())
 
 
-def judge(text: str) -> None:
+def say_coloured(text: str) -> None:
     """Print a text whose verdicts are in colour on a terminal."""
     if sys.stdout.isatty() and "NO_COLOR" not in os.environ:
         _print(coloured(printable(text, LAYOUT)))

@@ -155,7 +155,7 @@ def _take(
 ) -> None:
     typed = [t.text for t in equation.tokens]
     rows = _rows(sides[0], sides[-1])
-    # Of w(0) = w'(0) = 0, each is a condition.
+    # A chain such as w(0) = w'(0) = 0 has a condition in each side.
     rows += [row for side in sides[1:-1] if _is_placed(side) for row in _rows(side, sides[-1])]
     if not rows and not is_inline:
         found.gaps.append(f"line {equation.span.line} has sides of different sizes: {_comment(equation)}")

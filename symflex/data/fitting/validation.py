@@ -31,7 +31,7 @@ class Validation:
     """The second halves of records over their prediction: a value, or an array, for each output."""
 
     modes: int  # resonances of the fit to the first half
-    # Of the first record of each output.
+    # times_s, measured and predicted are those of the first record of each output.
     times_s: tuple[Real, ...]
     measured: tuple[Real, ...]
     predicted: tuple[Real, ...]

@@ -369,7 +369,7 @@ def _without_ones(terms: Sequence[Expression]) -> Sequence[Expression]:
         front, powers = powers_of(term)
         (call, n), *more = powers.items() if powers else ((ONE, 0),)
         one = number(-front)
-        if more or n != 2 or not isinstance(call, Call) or call.name not in OTHERS or one not in terms:  # noqa: PLR2004
+        if more or n != 2 or not isinstance(call, Call) or call.name not in OTHERS or one not in terms:  # noqa: PLR2004 (a square)
             continue
         square = power(replace(call, name=OTHERS[call.name]), 2)
         joined = product_of([number(front if call.name == "cosh" else -front), square])
