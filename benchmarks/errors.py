@@ -2,7 +2,7 @@
 
 Input: the text of each export, run by its language: imported, compiled, in Octave; Julia's arithmetic is read
 as Python.
-Output: the table of ``docs/numeric-export.md``, the worst ``|dG| / (|G| (1 + |s G'/G|))`` over the band and
+Output: the table of ``benchmarks/errors.md``, the worst ``|dG| / (|G| (1 + |s G'/G|))`` over the band and
 beside resonances and antiresonances, and how many times the documented errors these are.
 
 No time is measured here: errors depend on a machine only as its mathematical library does.
@@ -51,7 +51,7 @@ ROOT: Final = Path(__file__).parents[1]
 MODELS: Final = {
     path.stem: path for path in sorted((ROOT / "derivations").glob("**/*.toml")) if path.name != "claims.toml"
 }
-PAGE: Final = ROOT / "docs" / "numeric-export.md"
+PAGE: Final = ROOT / "benchmarks" / "errors.md"
 ROW: Final = re.compile(r"^\| `(\w+)` \|((?: [-0-9.e–]+ \|)+)$", re.MULTILINE)
 REFUSED: Final = "–"
 """In the table, of what a target has no code for: a beam has no finite state equations."""

@@ -205,7 +205,7 @@ def catalogue() -> str:
     cards = []
     for name, element in ELEMENTS.items():
         drawing = kept(f"element {alone(element)}", partial(drawn_alone, element))
-        link = f'<a href="../spec-language/#{name}"><code>{name}</code></a>'
+        link = f'<a href="#{name}"><code>{name}</code></a>'
         cards.append(f"<figure>{drawing}<figcaption>{link} {element.summary}</figcaption></figure>")
     return "\n".join(('<div class="elements">', *cards, "</div>"))
 

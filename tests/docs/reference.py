@@ -123,10 +123,17 @@ def _element(name: str, element: Element) -> str:
         *map(_element_parameter_row, element.parameters),
         *map(_choice_row, element.choices),
     ]
-    quantities = ", ".join(f"`{name}.{quantity}`" for quantity in element.through)
-    through = [f"Quantities of an element named `{name}`: {quantities}."] if quantities else []
     about = " ".join((element.__doc__ or "").replace("``", "`").split())
-    return "\n\n".join([f"### `{name}`", _escaped(about), _table(rows), *through])
+    return "\n\n".join([f"### `{name}`", _escaped(about), _keys(rows)])
+
+
+def _keys(rows: Iterable[tuple[str, ...]]) -> str:
+    """Return a line for every key: its value or unit, what it means, its default."""
+    lines = []
+    for key, value, meaning, default in rows:
+        end = {"required": ""}.get(default, f"; {'' if 'place' in default else 'default '}{default}")
+        lines.append(f"- {key}, {value}: {_escaped(meaning)}{end}")
+    return "\n".join(lines)
 
 
 def _escaped(text: str) -> str:
@@ -136,7 +143,7 @@ def _escaped(text: str) -> str:
 
 
 def _block(name: str, block: Block) -> str:
-    return "\n\n".join([f"### `{name}`", f"`{block.summary}`", _table(map(_parameter_row, block.parameters))])
+    return "\n\n".join([f"### `{name}`", f"`{block.summary}`", _keys(map(_parameter_row, block.parameters))])
 
 
 def _command(name: str, command: click.Command, parent: click.Context, heading: str) -> str:
@@ -160,9 +167,7 @@ def _text(content: str) -> str:
     return f"```text\n{content.rstrip()}\n```"
 
 
-def _table(
-    rows: Iterable[tuple[str, ...]], head: tuple[str, ...] = ("key", "value", "meaning", "default")
-) -> str:
+def _table(rows: Iterable[tuple[str, ...]], head: tuple[str, ...]) -> str:
     return "\n".join(f"| {' | '.join(row)} |" for row in [head, ("---",) * len(head), *rows])
 
 
