@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Final, Literal
 
+from symflex.algebra import LAPLACE
 from symflex.audit.corrections import Change, Correction, find_correction
 from symflex.audit.field import UnreadError
 from symflex.audit.laws import LawCheck, check_laws
@@ -68,17 +69,30 @@ class Audit:
         return () if self.correction is None else self.correction.changes
 
 
+WORST: Final[Sequence[Verdict]] = ("differs", "undecided", "agrees", "equal")
+
+
 def judge(tf: TransferFunction, published: Published) -> Audit:
     """Compare a printed formula with the derived function; SpecError for what is no formula.
 
-    A formula that prints numbers for some parameters is compared with the function that has the model's
-    values in their place.
+    Of ``G = a = b`` the worst side counts. A formula that prints numbers for some parameters is compared with
+    the function that has the model's values in their place.
     """
+    sides = (replace(published, expression=e, others=()) for e in (published.expression, *published.others))
+    return min((_judged_side(tf, side) for side in sides), key=lambda found: WORST.index(found.verdict))
+
+
+def _judged_side(tf: TransferFunction, published: Published) -> Audit:
     found = _judged(tf, published)
     if found.verdict == "equal":
         return found
     printed = {n.name for e in (found.formula.whole, *(e for _, e in found.formula.lines)) for n in names(e)}
     numeric = [p.name for p in tf.parameters if p.value is not None and p.name not in printed]
+    missing = [p.name for p in tf.parameters if p.value is None]
+    vanishes = found.comparison is not None and found.comparison.printed == 0
+    if missing and printed <= {LAPLACE, "pi"} and not vanishes:  # numbers could be those of any values
+        reason = f"the model has no values for {', '.join(missing)}"
+        return Audit(tf, published, found.formula, "undecided", reason)
     if not numeric:
         return found
     kept = [p.name for p in tf.model.parameters if p.name not in numeric]

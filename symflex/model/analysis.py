@@ -413,6 +413,7 @@ def read_published(
         expr = latex or reader.needed(table, "expr", entry, f"{what} has no 'expr' or 'latex'")
         if expr is None:
             continue
+        others: list[Expression] = []
         if latex is None:
             expression = reader.expression(expr.value, what, quantities=False)
         else:
@@ -420,18 +421,18 @@ def read_published(
             read = reader.read(
                 partial(_from_latex, notation=notation), reader.string(latex, f"latex of {what}")
             )
-            expression, lines = read or (None, ())
+            (*others, expression), lines = read or ((None,), ())
             where = None if where is None else (*where, *lines)
         scale = table.get("scale")
         scaled = reader.expression(scale.value, f"scale of {what}", quantities=False) if scale else None
         cited = reader.plain(table, "source", what)
         if expression is not None and where is not None and (scaled is not None or not scale):
-            given = Published(tf, expression, where, scaled, cited, entry.key_span, latex is not None)
-            published.append(given)
+            meant = (entry.key_span, latex is not None, tuple(others))
+            published.append(Published(tf, expression, where, scaled, cited, *meant))
     return tuple(published)
 
 
-def _from_latex(text: Text, notation: PaperNotation) -> tuple[Expression, NamedExpressions]:
+def _from_latex(text: Text, notation: PaperNotation) -> tuple[tuple[Expression, ...], NamedExpressions]:
     from symflex.papers.formula import read_latex  # few specifications hold LaTeX
 
     return read_latex(text, notation)

@@ -199,7 +199,9 @@ class Cycles(AsWritten):
     def printed(self, published: Published) -> Published:
         """Return a printed formula with 2 pi beside what it means in radians; its lines may hide names."""
         printed_lines = dict(published.where)
-        roots = [e for e in (published.expression, published.scale) if e is not None]
+        count = len(published.others) + 1
+        roots = [published.expression, *published.others]
+        roots += [published.scale] if published.scale is not None else []
         order, circle = lines_in_order(roots, printed_lines)
         if circle:
             return published
@@ -210,7 +212,9 @@ class Cycles(AsWritten):
             read = [inner.read(root) for root in roots]
             eager, reader = frozenset(order) & inner.turning - inner.kept, self.reader
         where = tuple((name, lines.get(name, e)) for name, e in published.where)
-        return replace(published, expression=read[0], where=where, scale=read[1] if read[1:] else None)
+        expression, *others = read[:count]
+        scale = read[count] if published.scale is not None else None
+        return replace(published, expression=expression, where=where, scale=scale, others=tuple(others))
 
     def _without(self, hidden: Collection[str], eager: Collection[str], reader: Reader) -> Cycles:
         """Return what reads expressions in which some names are others than the model's."""

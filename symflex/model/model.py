@@ -407,6 +407,7 @@ class Published:
     source: str = ""
     span: Span | None = field(default=None, compare=False, repr=False)
     is_latex: bool = False  # read from LaTeX
+    others: tuple[Expression, ...] = ()  # sides before the last one, of G = a = b
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,6 +31,7 @@ from symflex.expressions import (
     Quotient,
     fold,
     format_expression,
+    names,
     parse,
     substitute,
     with_children,
@@ -73,13 +74,15 @@ def read_formula(
 Lines = tuple[tuple[str, Expression], ...]
 
 
-def read_latex(text: Text, notation: PaperNotation) -> tuple[Expression, Lines]:
-    r"""Return a formula, the last side of ``G = a = b``, and the definitions that follow it.
+def read_latex(text: Text, notation: PaperNotation) -> tuple[tuple[Expression, ...], Lines]:
+    r"""Return the sides of ``G = a = b`` that are formulas, and the definitions that follow it.
+
+    The last side has to be read. One before it counts if nothing in it lacks a meaning.
 
     >>> from symflex.expressions import format_expression
     >>> from symflex.papers.symbols import notation_of
     >>> text = Text.alone("paper", r"\frac{c}{s+p}, \text{ where } p = 2c")
-    >>> formula, lines = read_latex(text, notation_of([]))
+    >>> (formula,), lines = read_latex(text, notation_of([("c", "")]))
     >>> format_expression(formula), [(name, format_expression(line)) for name, line in lines]
     ('c/(s + p)', [('p', '2*c')])
     """
@@ -95,9 +98,24 @@ def read_latex(text: Text, notation: PaperNotation) -> tuple[Expression, Lines]:
     for other in others:
         if defined_symbol(other) is None:
             raise refusal(other.span, "this is more than one formula", "give one formula")
-    formula = read_formula(first.sides[-1], more, laplace=laplace_of(first, notation))
-    (whole, *values), _ = in_laplace([formula, *(line for _, line in lines)], more)
-    return whole, tuple((name, line) for (name, _), line in zip(lines, values, strict=True))
+    laplace = laplace_of(first, notation)
+    formula = read_formula(first.sides[-1], more, laplace=laplace)
+    meant = {*more.names.values(), "pi", *(n.name for n in names(formula) if isinstance(n, Name))}
+    meant -= notation.signals
+    sides = []
+    for side in first.sides[1:-1]:
+        try:
+            sides.append(read_formula(side, more, laplace=laplace))
+        except SpecError:
+            continue
+    sides = [
+        e
+        for e in sides
+        if all(isinstance(n, Name) and n.name in meant for n in names(e) if n.name not in FUNCTIONS)
+    ]
+    whole, _ = in_laplace([*sides, formula, *(line for _, line in lines)], more)
+    count = len(sides) + 1
+    return tuple(whole[:count]), tuple((n, e) for (n, _), e in zip(lines, whole[count:], strict=True))
 
 
 def defined_symbol(statement: PrintedEquation) -> tuple[PrintedSymbol, PrintedEquation] | None:

@@ -108,6 +108,9 @@ ARGUMENTS: Final = frozenset(  # what a function of time or frequency is written
         r"i\omega",
         r"\imath\omega",
         r"\jmath\omega",
+        r"\Omega",
+        r"j\Omega",
+        r"i\Omega",
     )
 )
 PARTS: Final = frozenset("Re Im arg sgn sign min max det diag rank tr span".split())
@@ -135,6 +138,8 @@ class LatexReader(SymbolReader):
         self.open: dict[int, int] = {}  # where there are how many readings
         self.built: dict[int, Expression] = {}  # what was made of them
         self.logarithm: int | None = None  # where the first one stands that does not say its base
+        self.arguments: dict[int, str] = {}  # where (s) follows a constant, and which
+        self.bare: set[str] = set()  # constants that it does not follow
 
     def choose(self, at: int, count: int) -> int:
         """Return which reading to take at a token that has so many."""
@@ -146,6 +151,10 @@ class LatexReader(SymbolReader):
         value = self.sum()
         if self.at < len(self.tokens):
             self.unexpected()
+        # All of G(s)H(s)/(1 + G(s)H(s)) are functions; alone, b(s) in ms^2 + b(s) + k may be a product.
+        if len(self.arguments) > 1 and self.bare.isdisjoint(self.arguments.values()):
+            for at in self.arguments:
+                self.open.pop(at, None)
         return value
 
     def unexpected(self) -> NoReturn:
@@ -749,6 +758,7 @@ class LatexReader(SymbolReader):
         end = self.end_of_bracket(self.at) if self.text in ("(", "[") else -1
         name = value.name if isinstance(value, Name) else ""
         if end < 0 or name in ("", "pi", LAPLACE):
+            self.bare.add(name)
             return
         inside = self.tokens[self.at + 1 : end - 1]
         typed = "".join(t.text for t in inside if t.text not in FONTS and t.text not in "{}")
@@ -760,10 +770,16 @@ class LatexReader(SymbolReader):
                 typed in ("p", "z", "D", r"\omega")
                 and PrintedSymbol(LETTERS.get(typed, typed)) in names_known
             )
+            if typed == LAPLACE:
+                after = self.tokens[end].text if end < len(self.tokens) else ""
+                self.bare |= {name} if after == "^" else set()
+                self.arguments[self.at] = name
             if not (is_product and self.choose(self.at, 2)):
                 self.at = end
         elif typed.startswith(("t+", "t-")) and PrintedSymbol("t") not in names_known:
             self.refuse(f"a function of time, {name}({typed[:40]}), is not read")
+        elif re.search(r"(?<![_\d])\d,\d", typed) and is_constant:
+            self.refuse("a comma separates what should be one formula", "a decimal comma is {,}")
         elif any(t.text == "," and not depth for t, depth in with_depth(inside)):
             self.refuse(f"a function of several variables, {name}({typed[:40]}), is not read")
         elif is_constant:

@@ -12,7 +12,7 @@ whose bar is too short, or the factor that another formula of the paper lacks.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from typing import Final, Literal
 
@@ -58,7 +58,7 @@ from symflex.model.analysis import notation_of_model, readable_names, with_candi
 from symflex.papers.formula import defined_symbol, definition, read_formula
 from symflex.papers.laplace import in_laplace, laplace_of
 from symflex.papers.source import Paper, PrintedEquation, statements, written
-from symflex.papers.symbols import PaperNotation, PrintedSymbol
+from symflex.papers.symbols import IMAGINARY, PaperNotation, PrintedSymbol
 from symflex.print.label import labels_of
 from symflex.print.latex import latex_expression, model_labels
 from symflex.report.document import Badge, Block, Code, Section, Tone, labelled, marked, text
@@ -205,9 +205,7 @@ class _Court:
                 if reason.verdict == "not read" or last.verdict == "other model":
                     last = replace(last, verdict=reason.verdict, reason=reason.reason)
             except SpecError as error:
-                said = error.diagnostics[0]
-                place = f"{said.span.line}:{said.span.column}: " if said.span is not None else ""
-                last = replace(last, verdict="not read", reason=f"{place}{said.message}")
+                last = replace(last, verdict="not read", reason=_reason(error))
         return last
 
     def judged_by(self, item: _Item, model: Model) -> JudgedFormula:
@@ -218,10 +216,8 @@ class _Court:
             raise _Unjudged("not read", "it holds only nearly, by its sign")
         if len(equation.sides) > MOST_SIDES:
             raise _Unjudged("not read", f"it has more than {MOST_SIDES} sides")
-        notation = self.notation(model)
-        laplace = laplace_of(equation, notation)
-        read = [read_formula(side, notation, laplace=laplace) for side in equation.sides]
-        sides, _ = in_laplace(read, notation)
+        notation = self.notation(model, equation)
+        sides, missed = _read_sides(equation, notation)
         defined = {s.name for s, e in self.definitions.items() if e is equation}
         claims = list(_claims(sides, model, {*notation.names.values()} - defined))
         number_of = self.models.index(model)
@@ -230,17 +226,31 @@ class _Court:
                 for side in sides:
                     if isinstance(side, Name):
                         self.tied.setdefault((number_of, side.name), {}).setdefault(pair)
-        if not claims and isinstance(sides[0], Name) and (number_of, sides[0].name) in self.tied:
-            return self.by_letter(item, model, sides[0].name, sides[-1], notation)
+        letter = sides[0].name if isinstance(sides[0], Name) else ""
+        is_tied = not claims and (number_of, letter) in self.tied
+        if is_tied:
+            claims = [(None, side) for side in sides[1:]]
         if not claims:
-            raise _Unjudged("other model", "it names no transfer function of the models")
-        best: JudgedFormula | None = None
-        for tf, formula in claims:
-            judged = self.best(item, model, tf, formula, notation)
-            if best is None or _rank(judged) > _rank(best):
-                best = judged  # of G = a = b the worst side counts
-        assert best is not None
-        return best
+            raise (
+                missed[0]
+                if missed
+                else _Unjudged("other model", "it names no transfer function of the models")
+            )
+        judged: list[JudgedFormula] = []
+        while claims:
+            later = []
+            for tf, formula in claims:
+                try:
+                    if is_tied:
+                        judged.append(self.by_letter(item, model, letter, formula, notation))
+                    else:
+                        judged.append(self.best(item, model, tf, formula, notation))
+                except (_Unjudged, SpecError) as reason:
+                    missed.append(reason)
+                    later += [formula] if tf is None and not is_tied else []
+            right = [j.audit.published.tf for j in judged if j.audit is not None and j.verdict == "equal"]
+            claims = [(tf, formula) for tf in right[:1] for formula in later]  # G is this function then
+        return _worst(judged, missed)
 
     def by_letter(
         self, item: _Item, model: Model, letter: str, formula: Expression, notation: PaperNotation
@@ -307,8 +317,13 @@ class _Court:
             (self.derived[key],) = derive_all(model, (published.tf,))
         return judge(self.derived[key], published)  # type: ignore[arg-type]
 
-    def notation(self, model: Model) -> PaperNotation:
-        """Return what symbols mean in a paper about a model: its own definitions hide those of the model."""
+    def notation(self, model: Model, equation: PrintedEquation) -> PaperNotation:
+        """Return what symbols mean in a paper about a model: its own definitions hide those of the model.
+
+        Beside a frequency, i is the imaginary unit and no current I.
+        """
+        letters = {t.text for t in equation.tokens}
+        units = IMAGINARY if letters & {r"\omega", r"\Omega"} else ()
         base = notation_of_model(model, model.notation)
         defined = {d.name for d in model.definitions}
         more = {
@@ -321,7 +336,7 @@ class _Court:
             twin = symbol._replace(
                 base=symbol.base.swapcase() if len(symbol.base) == 1 else _turned(symbol.base)
             )
-            if name in ends and twin not in base.names:
+            if name in ends and twin not in base.names and twin.name not in units:
                 more.setdefault(twin, name)
         varying = base.signals | {symbol.name for symbol in self.definitions}
         return replace(base.with_names(more), signals=varying - {p.name for p in model.parameters})
@@ -368,13 +383,23 @@ class _Court:
     def meaning(
         equation: PrintedEquation, model: Model, notation: PaperNotation, bound: Mapping[str, int]
     ) -> Expression:
-        """Return what an equation defines: its last side that says more than which output and input it is."""
+        """Return what an equation defines: its last side that says more than a number or an output and input.
+
+        Of ``tau = R C = 0.03 s`` that is R C.
+        """
         ends = {item.name for group in (model.outputs, model.inputs) for item in group}
+        values: list[Expression] = []
+        problem: SpecError | None = None
         for count in range(len(equation.sides), 1, -1):
-            value = definition(equation._replace(sides=equation.sides[:count]), notation, bound)
-            if not any(_holds(value, end) for end in ends):
-                return value
-        return value
+            try:
+                values.append(definition(equation._replace(sides=equation.sides[:count]), notation, bound))
+            except SpecError as error:
+                problem = problem or error
+        if not values:
+            assert problem is not None
+            raise problem
+        said = [v for v in values if not any(_holds(v, end) for end in ends)]
+        return next((v for v in said if names(v)), (said or values)[0])
 
     def defining(self, name: str) -> tuple[PrintedEquation | None, Mapping[str, int]]:
         """Return the equation that defines a name; R_3 may be defined as R_i, and then i is 3."""
@@ -431,6 +456,45 @@ def _labelled(found: Sequence[PrintedEquation], labels: Sequence[tuple[int, str]
         yield _Item(equation, own[0] if own else only)
 
 
+def _read_sides(
+    equation: PrintedEquation, notation: PaperNotation
+) -> tuple[list[Expression], list[_Unjudged | SpecError]]:
+    """Return the sides that are read, in s, and why others are not; the first one has to be read."""
+    laplace = laplace_of(equation, notation)
+    sides = [read_formula(equation.sides[0], notation, laplace=laplace)]
+    missed: list[_Unjudged | SpecError] = []
+    for side in equation.sides[1:]:
+        try:
+            sides.append(read_formula(side, notation, laplace=laplace))
+        except SpecError as error:
+            missed.append(error)
+    return in_laplace(sides, notation)[0], missed
+
+
+def _worst(judged: Sequence[JudgedFormula], missed: Sequence[_Unjudged | SpecError]) -> JudgedFormula:
+    """Return what counts of ``G = a = b``: the worst side that is judged, with why others are not."""
+    sure = [j for j in judged if j.verdict != "not read"]
+    if not judged:
+        raise next((m for m in missed if isinstance(m, SpecError) or m.verdict == "not read"), missed[0])
+    worst = max(sure or judged, key=_rank)
+    reasons = [j.reason for j in judged if sure and j.verdict == "not read"]
+    reasons += [_reason(m) for m in missed if isinstance(m, SpecError) or m.verdict == "not read"]
+    if not reasons:
+        return worst
+    count = "one of its sides is" if len(reasons) == 1 else f"{len(reasons)} of its sides are"
+    said = f"{count} not judged: {'; '.join(dict.fromkeys(reasons))}"
+    return replace(worst, reason=f"{worst.reason}; {said}" if worst.reason else said)
+
+
+def _reason(missed: _Unjudged | SpecError) -> str:
+    """Return why something is not judged, with its place."""
+    if isinstance(missed, _Unjudged):
+        return missed.reason
+    said = missed.diagnostics[0]
+    place = f"{said.span.line}:{said.span.column}: " if said.span is not None else ""
+    return f"{place}{said.message}"
+
+
 def _claims(
     sides: Sequence[Expression], model: Model, known: set[str]
 ) -> Iterator[tuple[tuple[str, str] | None, Expression]]:
@@ -438,12 +502,12 @@ def _claims(
 
     A name that is not known, as it has no meaning or this equation gives it one, is no formula.
     """
-    pairs = model.transfer_functions
+    pairs, inputs = model.transfer_functions, {item.name for item in model.inputs}
     found = False
     for i, left in enumerate(sides):
         for right in sides[i + 1 :]:
             for pair in pairs:
-                formula = _solved(left, right, pair)
+                formula = _solved(left, right, pair, inputs)
                 if (
                     formula is not None
                     and _says_something(formula, pair)
@@ -453,7 +517,7 @@ def _claims(
                     yield pair, formula
     if not found and not any(_holds(side, end) for side in sides for pair in pairs for end in pair):
         if _is_function(sides[0], known):
-            yield None, sides[-1]
+            yield from ((None, side) for side in sides[1:] if not _is_function(side, known))
 
 
 def _says_something(formula: Expression, pair: tuple[str, str]) -> bool:
@@ -475,19 +539,40 @@ def _holds(expression: Expression, name: str) -> bool:
     return any(isinstance(n, Name) and n.name == name for n in names(expression))
 
 
-def _solved(left: Expression, right: Expression, pair: tuple[str, str]) -> Expression | None:
-    """Return the output over the input as an equation says it, ``None`` if it is no product of them."""
+def _solved(
+    left: Expression, right: Expression, pair: tuple[str, str], inputs: Set[str]
+) -> Expression | None:
+    """Return the output over the input as an equation says it, ``None`` if it says nothing of them alone."""
     powers = []
     rests = [left, right]
     for name in pair:
         split = [_split(rest, name) for rest in rests]
         if split[0] is None or split[1] is None:
-            return None
+            return _superposed([left, negative(right)], pair, inputs)
         rests = [split[0][0], split[1][0]]
         powers.append(split[0][1] - split[1][1])
     if powers == [1, -1]:
         return _over(rests[1], rests[0])
     return _over(rests[0], rests[1]) if powers == [-1, 1] else None
+
+
+def _superposed(terms: Sequence[Expression], pair: tuple[str, str], inputs: Set[str]) -> Expression | None:
+    """Return the output over the input if these terms add to zero, all other inputs being zero."""
+    parts: dict[str, list[Expression]] = {name: [] for name in (*inputs, *pair)}
+    pending = [*terms]
+    while pending:
+        term = pending.pop(0)
+        inner = term.operand if isinstance(term, Negative) else term
+        if isinstance(inner, Sum):
+            pending[:0] = [negative(t) for t in inner.terms] if inner is not term else inner.terms
+            continue
+        held = [name for name in parts if _holds(term, name)]
+        split = _split(term, held[0]) if len(held) == 1 else None
+        if split is None or split[1] != 1:
+            return None
+        parts[held[0]].append(split[0])
+    output, given = (parts[name] for name in pair)
+    return _over(sum_of(given), negative(sum_of(output))) if output and given else None
 
 
 def _over(above: Expression, below: Expression) -> Expression:
@@ -532,7 +617,10 @@ def _judged(item: _Item, model: Model, audit: Audit) -> JudgedFormula:
     if audit.verdict == "equal":
         return replace(found, verdict="equal")
     if audit.verdict != "differs":
-        return replace(found, reason=f"it {VERDICTS[audit.verdict]}")
+        is_near = audit.verdict == "agrees"
+        return replace(
+            found, reason=f"it {VERDICTS['agrees']}" if is_near else f"not decided: {audit.unread}"
+        )
     if audit.ratio is not None:
         return replace(found, verdict="factor", slip=_ratio_said(audit))
     return replace(found, verdict="different", slip=_changes_said(audit))

@@ -7,4 +7,4 @@ from symflex.papers.symbols import notation_of
 
 
 def read(latex: str, known: str = "") -> Expression:
-    return read_latex(Text.alone("paper.tex", latex), notation_of([(n, "") for n in known.split()]))[0]
+    return read_latex(Text.alone("paper.tex", latex), notation_of([(n, "") for n in known.split()]))[0][-1]

@@ -104,7 +104,7 @@ def test_what_symflex_prints_in_latex_is_read_back() -> None:
     for expression in (tree(3) for _ in range(150)):
         latex = latex_expression(expression, labels)
         try:
-            back, _ = read_latex(Text.alone("printed.tex", latex), notation_of(list(labels.items())))
+            (back,), _ = read_latex(Text.alone("printed.tex", latex), notation_of(list(labels.items())))
         except SpecError as error:
             assert "two ways" in str(error)
             continue
@@ -167,7 +167,7 @@ def test_definitions_after_where_are_lines() -> None:
     text = Text.alone(
         "paper.tex", r"G = \frac{S}{p}, \text{ where } S = p^2,\quad a^2 = \frac{b}{c}, p = \frac sa"
     )
-    formula, lines = read_latex(text, notation_of([]))
+    (formula,), lines = read_latex(text, notation_of([]))
     assert format_expression(formula) == "S/p"
     assert {name: format_expression(line) for name, line in lines} == {
         "S": "p^2",

@@ -3,6 +3,7 @@
 import pytest
 
 from symflex.errors import SpecError
+from symflex.expressions import format_expression
 from tests.unit.papers.reading import read
 
 UNREAD = (
@@ -44,3 +45,20 @@ def test_nesting_and_length_are_bounded() -> None:
         read("a+" * 20_000)
     with pytest.raises(SpecError, match="SF103"):
         read("((2^{64})^{64})^{64}")
+
+
+@pytest.mark.parametrize(
+    ("latex", "known", "text"),
+    [
+        (r"\frac{G(s)H(s)}{1 + G(s)H(s)}", "G H", "G*H/(1 + G*H)"),
+        (r"\frac{G_1(s)}{1 + k\,G_2(s)\frac{1}{s + 100}}", "G_1 G_2 k", "G_1/(1 + k*G_2*(1/(s + 100)))"),
+    ],
+)
+def test_several_constants_with_s_in_brackets_are_functions(latex, known, text):
+    assert format_expression(read(latex, known)) == text
+
+
+@pytest.mark.parametrize("latex", [r"\frac{1}{ms^2 + b(s) + k}", r"\frac{1}{J(s)^2 + b(s)}", r"G(s)H(s) + G"])
+def test_a_constant_with_s_in_brackets_may_be_a_product(latex):
+    with pytest.raises(SpecError, match="two ways"):
+        read(latex, "m b k J G H")

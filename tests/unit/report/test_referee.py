@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from symflex.audit import audit
 from symflex.errors import Text
 from symflex.model import Model
 from symflex.papers.source import read_text
@@ -170,3 +171,68 @@ def test_a_letter_that_was_a_transfer_function_is_one_where_it_comes_again():
     paper = r"\[ H(s) = \frac{X}{F} = \frac{1}{ms^2+cs+k} \] \[ H(s) = \frac{1}{ms^2+cs+2k} \]"
     first, second = referee(read_text(Text.alone("paper.tex", paper)), [loads(OSCILLATOR)])
     assert (first.verdict, second.verdict) == ("equal", "different")
+
+
+COIL = """
+symflex = 1
+parameters = { R = {}, C = {} }
+inputs = { U = {}, D = {} }
+outputs = { Y = "(U - D)/(R*C*s + 1)" }
+"""
+"""A low-pass filter by hand: R C y' + y = u - d."""
+
+
+def verdicts(latex: str, spec: str = COIL) -> list[tuple[str, str]]:
+    return [(j.verdict, j.reason) for j in judged(loads(spec), f"$$ {latex} $$")]
+
+
+@pytest.mark.parametrize(
+    ("latex", "verdict"),
+    [
+        (r"\frac{Y}{U} = \frac{1}{RCs + 1} = \frac{1/R}{Cs + 1/R}", "equal"),
+        (r"\frac{Y}{U} = \frac{1/R}{C + 1/R} = \frac{1}{RCs + 1}", "different"),
+        (r"G(s) = \frac{1/R}{C + 1/R} = \frac{1}{RCs + 1}", "different"),
+        (r"H = \frac{Z_C}{Z_R + Z_C} = \frac{1}{RCs + 1}", "equal"),
+    ],
+)
+def test_the_worst_side_of_an_equation_counts_if_its_symbols_have_a_meaning(latex, verdict):
+    ((found, _),) = verdicts(latex)
+    assert found == verdict
+
+
+def test_audit_judges_the_sides_of_an_equation_as_referee_does():
+    """Where a middle side is wrong, both say so."""
+    middle = r"\\frac{Y}{U} = \\frac{1/R}{C + 1/R} = \\frac{1}{RCs + 1}"
+    (found,) = audit(loads(f'{COIL}published."Y/U" = {{ latex = "{middle}" }}'))
+    ((verdict, _),) = verdicts(middle.replace("\\\\", "\\"))
+    assert (found.verdict, verdict) == ("differs", "different")
+
+
+def test_a_side_that_is_not_judged_is_named():
+    ((found, reason),) = verdicts(r"\frac{Y}{U} = \frac{1}{RCs + 1} = \frac{\omega_g}{s + R C \omega_g}")
+    assert found == "equal"
+    assert reason.startswith("one of its sides is not judged: symbols without a meaning: omega_g")
+
+
+def test_an_equation_of_an_output_and_several_inputs_is_solved_by_superposition():
+    ((right, _),) = verdicts(r"RCsY(s) + Y(s) = U(s) - D(s)")
+    ((wrong, _),) = verdicts(r"RCsY(s) + Y(s) = U(s) + D(s)")
+    ((free, _),) = verdicts(r"RCsY(s) + X(s) = U(s)")
+    assert (right, wrong, free) == ("equal", "factor", "other model")
+
+
+def test_a_definition_with_its_value_is_what_it_says_in_symbols():
+    paper = r"\frac{Y}{U} = \frac{1}{\tau s + 1}, \qquad \tau = R C = 0.03\ \mathrm{s}"
+    assert verdicts(paper)[0] == ("equal", "")
+
+
+def test_numbers_are_no_difference_where_the_model_has_no_values():
+    ((found, reason),) = verdicts(r"\frac{Y}{U} = \frac{1}{0.03 s + 1}")
+    assert (found, "the model has no values for" in reason) == ("not read", True)
+
+
+def test_beside_a_frequency_i_is_no_current():
+    spec = (
+        'symflex = 1\nparameters = { R = {}, L = {} }\ninputs = { I = {} }\noutputs = { V = "(R + L*s)*I" }'
+    )
+    assert verdicts(r"Z = R + i \omega L", spec)[0][0] == "equal"
