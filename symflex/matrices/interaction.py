@@ -19,6 +19,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 
 from symflex.algebra import LAPLACE, NO_KERNELS, Factored, by_powers
 from symflex.errors import Diagnostic, ModelError
@@ -26,7 +27,8 @@ from symflex.expressions import Expression, format_expression, names_in, number,
 from symflex.matrices.inverse import inverse
 from symflex.matrices.notations import drawn_matrix, ends_text
 from symflex.matrices.printed import MatrixForm
-from symflex.matrices.transfer_matrix import TransferMatrix, joined_ring, one_table
+from symflex.matrices.transfer_matrix import TransferMatrix, derive_matrix, joined_ring, one_table
+from symflex.model import with_numbers
 from symflex.model.loss_factors import check_causal
 from symflex.print.forms import print_part
 from symflex.print.forms.printed import PrintedForm
@@ -56,15 +58,35 @@ class Interaction:
         """Return constants as an author would write them, each read back."""
         return tuple(tuple(map(_printed, row)) for row in gains)
 
-    def values(self, gains: Gains) -> list[list[float]] | None:
-        """Return constants in doubles, None where a parameter has no value or one is complex."""
+    @cached_property
+    def with_numbers(self) -> Interaction | None:
+        """The same of the model with the values of its parameters, with which other things may cancel."""
+        matrix = self.matrix
+        rows, columns = [o.name for o in matrix.outputs], [i.name for i in matrix.inputs]
         try:
-            numbers = [[bind(tf)(0j) for tf in row] for row in gains]
+            return interaction(derive_matrix(with_numbers(matrix.model, in_kernels=True), rows, columns))
+        except ModelError:
+            return None
+
+    def values(self, gains: Gains) -> list[list[float]] | None:
+        """Return constants in doubles, None where a parameter has no value or one is complex or infinite."""
+        one = self.with_numbers
+        pairs = () if one is None else zip(self.each, one.each, strict=True)
+        numeric = next((own for said, own in pairs if said is gains), None)
+        if numeric is None:
+            return None
+        try:
+            numbers = [[bind(tf)(0j) for tf in row] for row in numeric]
         except ModelError:
             return None
         if any(x.imag for row in numbers for x in row):
             return None
         return [[x.real for x in row] for row in numbers]
+
+    @property
+    def each(self) -> tuple[Gains | None, ...]:
+        """All three."""
+        return self.gains, self.decoupling, self.relative
 
     def numbers(self, gains: Gains, digits: int = 6) -> tuple[tuple[Expression, ...], ...] | None:
         """Return constants in decimals of so many digits, None where a parameter has no value."""

@@ -78,6 +78,9 @@ class SystemMatrix:
             return {j if j < count else j + len(moving): c for j, c in row.items()}
 
         upper, lower = [apart(row) for row in upper], [apart(row) for row in lower]
+        for i, divisor in enumerate(divisors):
+            if i not in moving:
+                lower[i] = {j: c / divisor for j, c in lower[i].items()}
         for place, i in enumerate(moving, count):
             upper.append({**{j: -c for j, c in lower[i].items()}, place: divisors[i]})
             lower[i] = {place: divisors[i] ** 0}

@@ -122,9 +122,11 @@ def bind(
     used = (*tf.parameters, *(p for p in tf.hidden_parameters if p not in tf.parameters))
     used = tuple(p for p in used if p.name not in dict(tf.fixed))
     exact = values_for(tf.model, used, dict(values or {}))
-    if tf.is_large:
+    is_of_model = tf.solve is not None  # else the model has another function between these ends
+    if is_of_model and tf.is_large:
         return _derived_with_numbers(tf, exact, [p.name for p in tf.model.parameters])
-    if zeros := [name for name, value in exact if not value.rational and name not in varied]:
+    zeros = [name for name, value in exact if not value.rational and name not in varied]
+    if is_of_model and zeros:
         with suppress(ModelError):  # with which there may be no model, but the limit of the formula
             return _derived_with_numbers(tf, exact, zeros)
     images, every = _substitution(tf, exact), [name for name, _ in exact]
@@ -149,7 +151,7 @@ def bind(
     # Numbers in place of names only slow the search for roots of waves, where nothing cancels by its value.
     is_other = hidden or (tf.hidden and not tf.kernels)
     has_symbols = any(not p.is_imaginary for p in used)
-    if is_other and has_symbols and not varied and tf.solve is not None:
+    if is_other and has_symbols and not varied and is_of_model:
         # A difference of parameters that is zero connects nothing, and subsystems that are equal are one.
         with suppress(ModelError):
             return _derived_with_numbers(tf, exact, every)
@@ -275,6 +277,8 @@ def _derived_or_refused(
     tf: TransferFunction, values: tuple[tuple[str, ExactValue], ...], names: Collection[str], what: str
 ) -> BoundTransferFunction:
     """Return a function derived with the values of some parameters; SF231 with the reason where none is."""
+    if tf.solve is None:
+        raise ModelError(Diagnostic("SF231", f"{what} for these values", None, "change them a little"))
     try:
         return _derived_with_numbers(tf, values, names)
     except ModelError as error:

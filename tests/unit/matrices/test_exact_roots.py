@@ -105,6 +105,21 @@ def test_example_4_11_of_skogestad_and_postlethwaite_has_its_pole_once_and_its_z
     assert abs(complex(direction.outputs[1]) + 2 / 3) < 1e-15
 
 
+def test_directions_of_outputs_count_what_outputs_are_divided_by() -> None:
+    text = """
+symflex = 1
+parameters = { k = 0.3 }
+inputs = { u = {}, v = {} }
+signals = { x = "2*(u + v)/s", w = "(u + s*v)/(s + 3)" }
+outputs = { y = "x/7", z = "w/k" }
+"""
+    (direction,) = roots_of(model_of(text)).directions
+    # By hand: the determinant has s - 1; at s = 1, y = 2*(u + v)/7 and z = (u + v)/(4*k).
+    assert complex(direction.zero) == 1
+    y, z = (complex(x) for x in direction.outputs)
+    assert z / y == pytest.approx(-(2 / 7) * 4 * 0.3, rel=1e-14)
+
+
 def test_a_pole_counts_as_often_as_in_the_denominators_of_minors() -> None:
     """ControlSystems.jl, test_analysis.jl: [2/(s+1) 3/(s+2); 1/(s+1) 1/(s+1)] has poles -1, -1, -2."""
     found = roots_of(of_functions(["2/(s+1)", "3/(s+2)"], ["1/(s+1)", "1/(s+1)"]))

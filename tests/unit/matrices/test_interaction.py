@@ -8,7 +8,9 @@ import pytest
 from symflex.errors import ModelError
 from symflex.expressions import format_expression
 from symflex.matrices.interaction import interaction, interaction_json, interaction_text
+from symflex.matrices.inverse import determinant
 from symflex.matrices.transfer_matrix import derive_matrix
+from symflex.transfer import bind
 from tests.unit.matrices.models import BEAM, TWO_MASSES, model_of
 
 
@@ -64,6 +66,29 @@ y = "2*v/(s + 1)"
     found = interaction(derive_matrix(model_of(text)))
     assert said(found, found.gains) == [["1/k", "1"], ["0", "2"]]
     assert found.values(found.relative) == [[1, 0], [0, 1]]
+
+
+def test_relative_gains_have_their_values_where_a_parameter_is_zero():
+    # By hand: [1, 0; 2, 1/3] is triangular, so each pair is alone, and the determinant is 1/(s + 1)/(s + 3).
+    matrix = derive_matrix(
+        model_of("""
+symflex = 1
+[parameters]
+a = { value = 0, assume = "real" }
+b = 2
+[inputs]
+u = {}
+v = {}
+[outputs]
+y = "u/(s + 1) + a*v"
+z = "b*u + v/(s + 3)"
+""")
+    )
+    found = interaction(matrix)
+    assert found.values(found.gains) == [[1, 0], [2, 1 / 3]]
+    assert found.values(found.decoupling) == [[1, 0], [-6, 3]]
+    assert found.values(found.relative) == [[1, 0], [0, 1]]
+    assert bind(determinant(matrix))(0.5) == pytest.approx(1 / (1.5 * 3.5), rel=1e-14)
 
 
 def test_loss_factors_have_no_static_gain():

@@ -89,6 +89,20 @@ def test_the_stated_error_is_not_exceeded_and_the_pole_lies_where_it_is_said():
     assert moved <= facts["poles"]["displacement"] <= 1.000001 * moved
 
 
+def test_the_stated_error_is_that_of_the_short_function_where_a_parameter_is_zero():
+    text = """
+symflex = 1
+parameters = { T = "0.1 s", a = { value = 0, assume = "real" } }
+inputs = { u = {} }
+outputs = { y = "exp(-s*T)*u/(1 + 2*T*s) + a*u*exp(-2*s*T)" }
+"""
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    facts = truncated(tf, 2)[1].approximation.facts
+    # abs(1 - j x - x^2/2 - exp(-j x)) is 1 % at x = omega T.
+    x = mpmath.findroot(lambda x: abs(1 - 1j * x - x**2 / 2 - mpmath.expj(-x)) - 0.01, 0.4)
+    assert facts["within_1_percent_to_hz"] == pytest.approx(float(x) / (0.2 * mpmath.pi), rel=0.01)
+
+
 @pytest.mark.parametrize("law", [', N = "100 N"', ', k_f = "1 kN/m^2"'])
 def test_waves_that_do_not_come_to_rest_are_refused(law):
     with pytest.raises(UsageError, match="do not vanish at s = 0, as under tension or on a foundation"):
