@@ -4,8 +4,11 @@ from math import pi, sqrt
 
 import pytest
 
-from symflex.contact.passivity import driving_function, find_passivity
+from symflex import pipeline
+from symflex.contact.passivity import _grows, driving_function, find_passivity, residue_at
 from symflex.errors import SymflexError, UsageError
+from symflex.roots import Modes
+from symflex.roots.locate import locate
 from tests.unit.contact.machines import ARM, DELAYED, LAGGED, machine
 
 
@@ -119,3 +122,83 @@ def test_loss_factors_are_refused():
     )
     with pytest.raises(SymflexError, match="loss factors"):
         driving_function(machine(text), "tip")
+
+
+def bound_of(formula):
+    text = f'symflex = 1\n[inputs]\nu = {{}}\n[outputs]\ny = "({formula})*u"\n'
+    return pipeline.derive_bound(pipeline.loads(text), [("y", "u")])[0]
+
+
+@pytest.mark.parametrize(
+    ("formula", "exact"),
+    [
+        ("s/(s^2 + 4)", [1 / 2]),
+        ("-3*s/(s^2 + 4)", [-3 / 2]),
+        ("5/s", [5]),
+        ("s/((s^2 + 4)*(s + 1))", [1 / 10]),  # 1/(2 (1 + 2j)) has this real part
+        # coth(T s) has 1/T at 0, pi j/T, 2 pi j/T, ... ; here T = 2.
+        ("(1 + exp(-4*s))/(1 - exp(-4*s))", [1 / 2] * 3),
+        ("-(1 + exp(-4*s))/(1 - exp(-4*s))", [-1 / 2] * 3),
+        # tanh(T s) has them halfway between.
+        ("(1 - exp(-4*s))/(1 + exp(-4*s))", [1 / 2] * 3),
+    ],
+)
+def test_residues_on_the_axis(formula, exact):
+    bound = bound_of(formula)
+    poles = locate(bound, None if bound.is_rational else Modes(3), with_zeros=False).poles
+    found = [residue_at(bound, p) for p in poles if p.on_imaginary_axis and not p.im < 0]
+    assert [float(x) for x in found][:3] == pytest.approx(exact)
+
+
+@pytest.mark.parametrize(
+    ("formula", "grows"),
+    [
+        ("s", False),
+        ("-s", True),
+        ("s^2 + s", True),
+        ("(2*s^2 + 1)/(s + 1)", False),
+        ("(1 - 2*s^2)/(s + 1)", True),
+        ("-1/s", False),
+        ("-7", False),
+        ("s*(2 + exp(-s))", False),
+        ("exp(-s)/(s + 1)", False),
+        ("-s*(2 + exp(-s))", None),
+        ("s^2*(2 + exp(-s))", None),
+    ],
+)
+def test_a_function_may_grow_as_s_and_no_faster(formula, grows):
+    assert _grows(bound_of(formula)) is grows
+
+
+@pytest.mark.parametrize(
+    ("equation", "unit", "fault"),
+    [
+        ("c*(s^2 + w^2)*x", "kg", None),
+        ("c*(s^2 + w^2)^2*x", "kg*s^2", "a pole on the imaginary axis is not simple: 0.31831 Hz"),
+        (
+            "-c*(s^2 + w^2)*x",
+            "kg",
+            "a pole on the imaginary axis has a residue that is not positive: 0.31831 Hz",
+        ),
+        ("c*s^3*x", "kg*s", "a pole on the imaginary axis is not simple: 0 Hz"),  # V/F = 1/(c s^2)
+        ("c*x", "N/m", None),
+        ("-c*x", "N/m", "the function grows faster than s, or with a negative factor"),  # V/F = -s/c
+    ],
+)
+def test_what_loses_nothing_on_the_axis_may_be_active_by_its_poles_there(equation, unit, fault):
+    text = f"""symflex = 1
+parameters = {{ c = "1 {unit}", w = "2 rad/s" }}
+[equations]
+unknowns = ["x"]
+equations = ["{equation} = F"]
+[inputs]
+F = {{ unit = "N" }}
+[outputs]
+V = "s*x"
+[ports]
+hand = {{ force = "F", velocity = "V" }}
+"""
+    found = find_passivity(pipeline.loads(text), "hand", is_explained=False)
+    assert found.is_lossless is (equation != "c*s^3*x")
+    assert found.passive is (fault is None)
+    assert not found.faults if fault is None else any(fault in each for each in found.faults)

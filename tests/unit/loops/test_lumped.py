@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from math import sqrt
+from math import exp, sqrt
 from types import SimpleNamespace
 
 import pytest
 from flint import arb
 
+from symflex import pipeline
 from symflex.algebra import Factored, Ring
 from symflex.balls import precision
-from symflex.loops.loop import GainPolynomial
+from symflex.loops.loop import GainPolynomial, characteristic_loop
 from symflex.loops.lumped import LumpedFactor
 from symflex.loops.stability_map import PoleCount
 
@@ -159,3 +160,30 @@ def test_fractions_are_cleared():
     # s^2/4 + (K - 1/3) s/7 + 1.
     of = factor([(Fraction(1, 4), 2), (Fraction(-1, 21), 1), (1, 0)], [(Fraction(1, 7), 1)])
     assert crossings(of) == [(1 / 3, [2], False, False)]
+
+
+# E and O are (w - 1)(w - 4) and K^2 - w^2, or the other way round: they meet at (1, +-1) and (4, +-4).
+@pytest.mark.parametrize("is_swapped", [False, True])
+def test_a_frequency_at_which_one_part_alone_vanishes_belongs_to_another_gain(is_swapped):
+    squares, gains = [(1, 4), (5, 2), (4, 0)], [(-1, 4)]  # as powers of s
+    even, odd = (gains, squares) if is_swapped else (squares, gains)
+    of = factor([*even, *((n, p + 1) for n, p in odd)], [], [(1, 0 if is_swapped else 1)])
+    found = [c for c in crossings(of) if c[1] != [0]]
+    assert found == [(k, [sqrt(abs(k))], False, False) for k in (-4, -1, 1, 4)]
+
+
+def test_roots_that_mirror_each_other_off_the_axis_have_no_frequency():
+    # (s^2 - 1)(s + 1) + log(K) - 1: E and O vanish together at K = e, where s^2 = 1.
+    text = """symflex = 1
+parameters.K = { value = 2, assume = "positive" }
+signals.y = "(log(K) - 1)*(r - y)/((s^2 - 1)*(s + 1))"
+inputs.r = {}
+outputs.Y = "y"
+"""
+    model = pipeline.loads(text)
+    (tf,) = pipeline.derive_all(model)
+    loop = characteristic_loop(tf, model.parameters[0])
+    (of,) = (LumpedFactor.of(loop.bound, f, loop, (Fraction(1, 10), Fraction(50))) for f in loop.with_gain)
+    at_zero, beside = sorted(of.crossings(12), key=lambda c: -len(c.frequencies))
+    assert float(at_zero.gain) == pytest.approx(exp(2)) and at_zero.frequencies == (0,)
+    assert float(beside.gain) == pytest.approx(exp(1)) and beside.frequencies == ()

@@ -64,6 +64,30 @@ def test_what_is_said_of_a_lag_that_was_left_out_ends_where_that_begins_to_show(
     )
 
 
+def test_roots_beside_an_excepted_part_are_named_with_it():
+    # Of 1 + j w T what is beyond 8.098 Hz is excepted, up to the end of the band, 20 Hz. Poles that both have
+    # are named up to 5 % beside: 8.098/1.04 and 20*1.04, not 8.098/1.06 and 20*1.06, nor a zero at 1 Hz.
+    near = [8.098 / 1.06, 8.098 / 1.04, 20 * 1.04, 20 * 1.06]
+    common = "*".join(f"(s + {2 * pi * f:.12g})" for f in near)
+    band = 'analysis.band = ["0.5 Hz", "20 Hz"]'
+    above = f"u*(s + {2 * pi:.12g})"
+    before, after = (function(f"{above}/({common}{lag})", band) for lag in ("*(T*s + 1)", ""))
+    facts = distance(before, after, roots_of(before, after)).facts
+    (excepted,) = facts["excepted"]
+    assert excepted["band_hz"] == [pytest.approx(8.098, rel=2e-3), 20]
+    assert excepted["poles_hz"] == [pytest.approx(f) for f in (near[1], 1 / (2 * pi * 0.01), near[2])]
+    assert excepted["zeros_hz"] == []
+    assert facts["zeros"]["compared"] == 1 and facts["zeros"]["displacement"] < 1e-12
+
+
+@pytest.mark.parametrize("shift", [0.49, 0.51])
+def test_a_root_that_moved_by_half_of_itself_is_another_one(shift):
+    before, after = function("u/(s + 1)"), function(f"u/(s + {1 + shift})")
+    poles = distance(before, after, roots_of(before, after)).facts["poles"]
+    assert (poles["compared"], poles["lost"]) == ((1, 0) if shift < 0.5 else (0, 1))
+    assert poles["displacement"] == (pytest.approx(shift) if shift < 0.5 else 0)
+
+
 def test_the_declared_band_is_compared():
     lag = function("u/(T*s + 1)", 'analysis.band = ["2 Hz", "5 Hz"]')
     assert distance(lag, lag, roots_of(lag, lag)).facts["band_hz"] == [2, 5]

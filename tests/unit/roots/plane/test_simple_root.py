@@ -5,10 +5,20 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from itertools import product
 
+import pytest
 from flint import acb, arb
 
 from symflex.balls import precision
-from symflex.roots.plane.local_roots import BOX_SHARE, SMALLER, _is_alone, prove_simple
+from symflex.roots.plane.local_roots import (
+    BOX_SHARE,
+    SMALLER,
+    _is_alone,
+    in_disc,
+    nearest_factor,
+    prove_simple,
+    prove_together,
+    snapped,
+)
 from tests.unit.roots.known_functions import KnownFunction
 
 
@@ -145,3 +155,89 @@ def test_a_root_is_alone_where_the_series_counts_no_other_within_some_radii():
             second = acb(2, 3) + acb(0, 1) * radius * SMALLER * arb(neighbour)
         function = KnownFunction(((((2, 3),), exponent), (((second.real, second.imag),), 1)), power=power)
         assert _is_alone(function, acb(2, 3), radius, exponent, 200) is alone, power
+
+
+def test_the_factor_that_vanishes_nearest_by_newtons_estimate_is_chosen():
+    one = acb(1)
+    assert nearest_factor([(acb(3), one, 1), (acb(2), one, 1), (acb(6), acb(2), 1)]) == 1
+    assert nearest_factor([(acb(3), one, 1), (acb(2), acb(0.5), 1), (acb(6), acb(4), 2)]) == 2
+    # What stands below, or does not change, has no root; where a factor is 0 it is the nearest.
+    assert nearest_factor([(acb(3), one, 1), (acb(1), one, -1), (acb(1), acb(0), 1)]) == 0
+    assert nearest_factor([(acb(1), one, 1), (acb(0), one, 1)]) == 1
+
+
+def together(roots, count, *, within=1e-4, digits=12, exponent=1, power=1, even=False, place=(2, 3)):
+    function = KnownFunction(((tuple(roots), exponent),), power=power)
+    start = (acb(*place) + acb(1e-14, 1e-14)).mid()
+    return prove_together(function, start, arb(within).mid(), digits, count, even=even)
+
+
+def test_roots_close_together_are_one_of_their_number_in_a_disc_of_the_digits_asked_for():
+    exact = acb(2, 3)
+    for exponent, power in product([1, 2], [1, 2]):
+        root = together([(2, 3), (2, 3)], 2 * exponent * power, exponent=exponent, power=power)
+        assert (root.multiplicity, root.certified) == (2 * exponent, False)
+        assert holds(root, exact) and root.re.rad() <= abs(exact) * 1.01e-12
+    single = together([(2, 3)], 1)
+    assert (single.multiplicity, single.certified, single.is_real) == (1, True, False) and holds(
+        single, exact
+    )
+    assert together([(2, 3), (2, 3)], 1) is together([(2, 3), (2, 3)], 3) is None
+
+
+def test_a_disc_grows_over_roots_that_are_apart_and_stays_below_its_bound():
+    # Two roots 2e-9 apart: a disc of 1e-12 times the size holds neither or one, one of 1e-8 times it both.
+    roots = [(arb(2), arb(3) + arb(1e-9).mid()), (arb(2), arb(3) - arb(1e-9).mid())]
+    root = together(roots, 2)
+    assert root.multiplicity == 2 and all(holds(root, acb(*each)) for each in roots)
+    assert 1e-9 < root.re.rad() < 1e-6
+    assert together(roots, 2, within=1e-10) is None
+
+
+@pytest.mark.parametrize("apart", [50, 99, 101, 5000])
+def test_a_disc_shrinks_until_no_other_root_is_next_to_it(apart):
+    size = abs(acb(2, 3)) * arb(10) ** -12
+    with precision(300):
+        other = (arb(2) + size * apart).mid()
+    root = together([(2, 3), (2, 3), (other, arb(3))], 2)
+    assert root.multiplicity == 2 and holds(root, acb(2, 3))
+    with precision(300):
+        assert root.re.rad() * 100 < abs(other - root.re.mid())
+
+
+def test_roots_are_put_on_an_axis_only_where_they_are_closer_to_it_than_a_distance():
+    close = arb(2) ** -10
+    beside, near = close, (close - close / 2**20)
+    for s, even, real, found in (
+        (acb(near, 1), True, True, (0, 1)),
+        (acb(-near, 1), True, True, (0, 1)),
+        (acb(beside, 1), True, True, (beside, 1)),
+        (acb(near, 1), False, True, (near, 1)),
+        (acb(1, near), False, True, (1, 0)),
+        (acb(1, beside), True, True, (1, beside)),
+        (acb(1, near), True, False, (1, near)),
+    ):
+        assert snapped(s, close, even=even, real=real) == acb(*found)
+
+
+@pytest.mark.parametrize(
+    ("centre", "multiplicity", "even", "real", "on_axis", "is_real"),
+    [
+        ((0, 2), 1, True, True, True, False),
+        ((0, 2), 1, False, True, False, False),
+        ((0, 2), 2, True, True, False, False),  # perhaps a pair beside the axis
+        ((-2, 0), 1, False, True, False, True),
+        ((-2, 0), 1, False, False, False, False),
+        ((-2, 0), 2, True, True, False, False),
+        ((1, 2), 1, True, True, False, False),
+    ],
+)
+def test_one_root_alone_in_a_disc_about_a_point_of_an_axis_lies_on_it(
+    centre, multiplicity, even, real, on_axis, is_real
+):
+    size = arb(2) ** -30
+    root = in_disc(acb(*centre), size, multiplicity, even=even, real=real)
+    assert (root.on_imaginary_axis, root.is_real, root.certified) == (on_axis, is_real, multiplicity == 1)
+    assert (root.re == 0, root.im == 0) == (on_axis, is_real)
+    assert on_axis or root.re.rad() >= size
+    assert is_real or root.im.rad() >= size
