@@ -12,15 +12,16 @@ input; what else occurs is a parameter. Values are not in equations, so they are
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence, Set
 from dataclasses import dataclass, field, replace
 from typing import Final
 
-from symflex.errors import SpecError
+from symflex.errors import Span, SpecError
 from symflex.expressions import (
     FUNCTIONS,
     Call,
     Derivative,
+    Differentiated,
     Expression,
     Name,
     Negative,
@@ -36,7 +37,9 @@ from symflex.papers.formula import defined_symbol, read_value
 from symflex.papers.laplace_equations import Signals, degree, is_ratio, signals_in, terms_of
 from symflex.papers.matrices import Matrix, Value
 from symflex.papers.matrix_equations import NamedMatrices
+from symflex.papers.reader import FRACTIONS
 from symflex.papers.source import (
+    LatexToken,
     Paper,
     PrintedEquation,
     group_end,
@@ -45,7 +48,7 @@ from symflex.papers.source import (
     text_of,
     written,
 )
-from symflex.papers.symbols import LAPLACE, PaperNotation, PrintedSymbol
+from symflex.papers.symbols import LAPLACE, LETTERS, PRIMES, PaperNotation, PrintedSymbol
 
 GAP: Final = "# GAP:"
 FORCES: Final = ("F", "f", "u", "U", "tau", "T", "M", "Q", "V", "v", "i", "I", "w", "q", "p", "r", "d")
@@ -54,6 +57,19 @@ ENERGIES: Final = 3  # from L to T and V, and to their parts
 LAGRANGE: Final = re.compile(
     r"\\d?fracddt\\d?frac\\partial\w+\\partial\\dot.*?-\\d?frac\\partial\w+\\partial\\?\w+"
 )
+ALONG: Final = re.compile(r"\\partial(t|x\^)")
+SUBSCRIPT: Final = re.compile(r"_\{?,?([xt]+)(?![\w,])\}?")
+STEEP: Final = re.compile(r"('{3,}|\^\{?\((3|4|iv|IV)\))")  # derivatives too high to be in time
+DOTTED: Final = re.compile(r"\\d?dot\{?\Z")
+PARTIAL: Final = re.compile(r"\\partial(\^\{?\d\}?)?\Z")
+SUPPORT: Final = re.compile(
+    r"\b(clamped|built[- ]in|fixed|cantilevered|pinned|hinged|simply[- ]supported|free)\b"
+    r"[^.;$]{0,60}((?:\$\s*x\s*=\s*[^$]{1,20}\$(?:,|\s|and|at)*)+)",
+    re.IGNORECASE,
+)
+POINT: Final = re.compile(r"\$\s*x\s*=\s*\\?(\w{1,9})\s*\$")
+SLOPES: Final = {"clamp": (0, 1), "built": (0, 1), "fixed": (0, 1), "canti": (0, 1), "free": (2, 3)}
+"""Which derivatives of a deflection are zero where a beam is held as a word says, (0, 2) for pins."""
 RESTING: Final = ("0", "e", "eq")  # indices of a length or an angle at rest
 
 
@@ -88,9 +104,11 @@ class _PaperMotion:
 
 def motion_specification(paper: Paper, title: str) -> str:
     """Return the specification of the equations of motion in a paper; SF115 when there are none."""
+    fields = _fields(paper)
     # Lagrange's equations have partial derivatives too, but none in time alone.
-    is_field = any(re.search(r"\\partial(t|x\^)", text_of(d.tokens)) for d in paper.displays)
-    found = _read(paper, PaperNotation({PrintedSymbol("s"): LAPLACE}, motion="field" if is_field else "time"))
+    is_field = bool(fields) or any(ALONG.search(text_of(d.tokens)) for d in paper.displays)
+    notation = PaperNotation({PrintedSymbol("s"): LAPLACE}, motion="time")
+    found = _read(paper, replace(notation, motion="field", fields=fields) if is_field else notation)
     if not any(
         isinstance(n, Derivative | Call)
         for one in found.equations
@@ -106,7 +124,30 @@ def motion_specification(paper: Paper, title: str) -> str:
         raise refusal(span, message, hint)
     if not is_field and (lagrangian := _lagrangian(paper, found)) is not None:
         return _energy_text(found, title, lagrangian, paper)
-    return _field_text(found, title) if is_field else _text(found, title)
+    return _field_text(found, title, paper) if is_field else _text(found, title)
+
+
+def _fields(paper: Paper) -> frozenset[str]:
+    """Return the letters of a paper that vary in time and along x, by their derivatives."""
+    slopes, rates, both = set[str](), set[str](), set[str]()
+    for display in paper.displays:
+        texts = [t.text for t in display.tokens]
+        for i, text in enumerate(texts):
+            letter = LETTERS.get(text, text)
+            if not letter.isalnum() or letter.isdigit():
+                continue
+            after = "".join(texts[i + 1 : i + 12])
+            before = "".join(texts[max(i - 5, 0) : i])
+            if index := SUBSCRIPT.match(after):
+                slopes |= {letter} if "x" in index[1] else set()
+                rates |= {letter} if "t" in index[1] else set()
+                both |= {letter} if len(index[1]) > 1 else set()
+            slopes |= {letter} if after.startswith(tuple(PRIMES)) else set()
+            rates |= {letter} if DOTTED.search(before) else set()
+            both |= {letter} if STEEP.match(after) else set()
+            if PARTIAL.search(before) and re.match(r".*?\\partial(t|x\^)", after):
+                both.add(letter)
+    return frozenset((both | (slopes & rates)) - {"x", "t", "s"})
 
 
 def _read(paper: Paper, notation: PaperNotation) -> _PaperMotion:
@@ -121,7 +162,7 @@ def _read(paper: Paper, notation: PaperNotation) -> _PaperMotion:
             if not display.is_inline:
                 found.gaps.append(f"line {display.span.line} is not read: {error.diagnostics[0].message}")
             continue
-        for equation in equations:
+        for equation in _with_places(equations, notation.fields):
             if len(equation.sides) > 1 and not equation.is_condition:
                 sides = _sides(equation, notation, found, is_inline=display.is_inline)
                 if sides and not found.matrices.takes(sides, equation):
@@ -129,6 +170,49 @@ def _read(paper: Paper, notation: PaperNotation) -> _PaperMotion:
     for equation, sides, is_inline in read:
         _take(equation, found.matrices.written_out(sides, equation), notation, found, is_inline=is_inline)
     return found
+
+
+def _with_places(equations: Sequence[PrintedEquation], fields: Set[str]) -> Iterator[PrintedEquation]:
+    r"""Yield equations with the place of ``w' = 0 \text{ at } x = l`` behind each field that has none."""
+    waiting: list[PrintedEquation] = []
+    for equation in equations:
+        first = text_of(equation.sides[0])
+        if equation.is_condition and first == "x" and len(equation.sides) == 2 and fields:  # noqa: PLR2004
+            yield from (_at_place(one, equation.sides[1], fields) for one in waiting)
+            waiting = []
+            continue
+        held = {LETTERS.get(t.text, t.text) for t in equation.tokens}
+        waiting.append(equation._replace(is_condition=False) if held & fields else equation)
+    yield from waiting
+
+
+def _at_place(equation: PrintedEquation, point: Sequence[LatexToken], fields: Set[str]) -> PrintedEquation:
+    """Return an equation in which fields are taken at a point."""
+    typed = [t.text for t in equation.tokens]
+    if equation.is_condition or (point and not set(typed) - {"x"}):
+        return equation
+    opening = [point[0]._replace(text=text) for text in ("(",)]
+    closing = [point[0]._replace(text=text) for text in (",", "t", ")")]
+    sides = []
+    for side in equation.sides:
+        out: list[LatexToken] = []
+        i = 0
+        while i < len(side):
+            token = side[i]
+            end = i + 1
+            is_field = LETTERS.get(token.text, token.text) in fields
+            if is_field:
+                while end < len(side) and (side[end].text in PRIMES or side[end].text in ("_", "^")):
+                    end = end + 1 if side[end].text in PRIMES else group_end(side, end + 1)
+            is_fraction = token.text in FRACTIONS and r"\partial" in [t.text for t in side[i + 1 : i + 4]]
+            if is_fraction:
+                end = group_end(side, group_end(side, i + 1))
+            out += side[i:end]
+            if (is_field or is_fraction) and "(" not in [t.text for t in side[end : end + 1]]:
+                out += [*opening, *point, *closing]
+            i = end
+        sides.append(tuple(out))
+    return equation._replace(sides=tuple(sides))
 
 
 def _sides(
@@ -167,9 +251,12 @@ def _take(
         moving = any(isinstance(n, Derivative) for n in held)
         if notation.motion != "time":
             moving |= any(isinstance(n, Name) and n.name == LAPLACE for n in held)
-        if (moving or _is_placed(left) or _is_placed(right)) and not is_inline:
+        is_placed = _is_placed(left) or _is_placed(right)
+        if (moving or is_placed) and (not is_inline or (is_placed and notation.motion == "field")):
             found.equations.append(one)
         elif defined_symbol(equation) is not None and isinstance(left, Name) and not _is_value(right):
+            if notation.motion == "field" and left.name == "x":
+                continue
             found.definitions.setdefault(left.name, (right, equation))
     for node in (n for side in sides for e in _entries(side) for n in names(e)):
         symbol = node.name.split("_")[0]
@@ -347,10 +434,8 @@ def _text(found: _PaperMotion, title: str, signals: Signals | None = None) -> st
     lines += _parameters(parameters)
     if kept:
         lines += ["", "[definitions]", *(f'{n} = "{format_expression(e)}"' for n, e in kept.items())]
-    lines += ["", "[equations]", f"unknowns  = [{', '.join(_quoted(u) for u in unknowns)}]", "equations = ["]
-    for one in found.equations:
-        lines += [f"    {_quoted(one.text)},  # line {one.printed.span.line}: {_comment(one.printed)}"]
-    lines += ["]"]
+    lines += ["", "[equations]", f"unknowns  = [{', '.join(_quoted(u) for u in unknowns)}]"]
+    lines += _listed("equations", found.equations)
     if is_nonlinear:
         lines += [
             "",
@@ -438,8 +523,9 @@ def _like_unknowns(terms: Iterable[Expression], unknowns: Sequence[str]) -> Iter
 # --- fields ---
 
 
-def _field_text(found: _PaperMotion, title: str) -> str:
+def _field_text(found: _PaperMotion, title: str, paper: Paper) -> str:
     """Return a specification with one field: an equation along x, and conditions at its ends."""
+    found.equations += _supports(found, paper)
     sides = [e for one in found.equations for e in (one.left, one.right)]
     points = [n for e in sides for n in names(e) if isinstance(n, Call) and n.name not in FUNCTIONS]
     along = dict.fromkeys(n.name for e in sides for n in names(e) if isinstance(n, Derivative))
@@ -456,28 +542,77 @@ def _field_text(found: _PaperMotion, title: str) -> str:
     parameters = [n for n in everything if n not in (*unknowns, *inputs, *kept, "x", "pi")]
     last = next((e for e in reversed(ends) if e != "0"), "l")
     lines = [*_heading(found, title)]
-    if len(unknowns) != 1 or len(fields) != 1:
+    if len(unknowns) != len(fields):
         lines.append(f"{GAP} {len(fields)} equations along x for the fields {', '.join(unknowns) or 'none'}")
-    order = max((n.order for e in sides for n in names(e) if isinstance(n, Derivative)), default=0)
+    order = sum(max((_order(e, name) for e in sides), default=0) for name in unknowns)
     if len(conditions) != order:
-        lines.append(f"{GAP} {len(conditions)} conditions for an equation of order {order} along x")
+        lines.append(f"{GAP} {len(conditions)} conditions for equations of order {order} along x")
     if not inputs:
         lines.append(f"{GAP} no input was found: add what acts to a condition and to [inputs]")
     lines += _parameters(list(dict.fromkeys([*parameters, *([last] if last.isidentifier() else [])])))
     if kept:
         lines += ["", "[definitions]", *(f'{n} = "{format_expression(e)}"' for n, e in kept.items())]
     name = unknowns[0] if unknowns else "w"
-    lines += ["", f"[fields.{name}]", f'domain     = ["0", "{last}"]']
-    lines += [
-        f"equation   = {_quoted(one.text)}  # line {one.printed.span.line}: {_comment(one.printed)}"
-        for one in fields[:1]
-    ]
-    lines += ["conditions = ["]
-    lines += [
-        f"    {_quoted(one.text)},  # line {one.printed.span.line}: {_comment(one.printed)}"
-        for one in conditions
-    ]
-    return "\n".join([*lines, "]", *_ends([name], inputs, [f"{name}({last})"]), ""])
+    lines += ["", f"[fields.{name}]"]
+    if len(unknowns) > 1:
+        lines += [f"unknowns   = [{', '.join(map(_quoted, unknowns))}]"]
+    lines += [f'domain     = ["0", "{last}"]']
+    if len(fields) == 1 and len(unknowns) < 2:  # noqa: PLR2004 (a system)
+        one = fields[0]
+        lines += [
+            f"equation   = {_quoted(one.text)}  # line {one.printed.span.line}: {_comment(one.printed)}"
+        ]
+    else:
+        lines += _listed("equations ", fields)
+    lines += _listed("conditions", conditions)
+    shown = [f"{n}({_free_point(n, last, conditions)})" for n in unknowns or [name]]
+    return "\n".join([*lines, *_ends(unknowns or [name], inputs, shown), ""])
+
+
+def _supports(found: _PaperMotion, paper: Paper) -> list[_Equation]:
+    """Return the conditions of one beam, rod or string that a sentence says, at ends that have none."""
+    sides = [e for one in found.equations for e in (one.left, one.right)]
+    slopes = [n for e in sides for n in names(e) if isinstance(n, Derivative)]
+    held = {format_expression(n.argument) for e in sides for n in names(e) if isinstance(n, Call)}
+    order = max((n.order for n in slopes), default=0)
+    if len({n.name for n in slopes}) != 1 or order not in (2, 4):
+        return []
+    source = paper.displays[0].span.source
+    is_plain = all(n.order == order for n in slopes)  # a free end of a beam in tension has another force
+    supports = []
+    for match in SUPPORT.finditer(source.text):
+        word = match[1].lower()
+        zero = SLOPES.get(word[:5].rstrip("- "), (0, 2)) if order > 2 else (int(word == "free"),)  # noqa: PLR2004
+        said = PrintedEquation(((LatexToken(match[0], Span(source, *match.span())),),))
+        for at in POINT.findall(match[2]):
+            point = number(int(at)) if at.isdigit() else Name(at)
+            if at not in held and (is_plain or word != "free"):
+                supports += [_Equation(Call(slopes[0].name, point, n), number(0), said) for n in zero]
+    return supports
+
+
+def _free_point(name: str, last: str, conditions: Sequence[_Equation]) -> str:
+    """Return where a field may move: its end, its beginning, or between them."""
+    given = {
+        format_expression(one.left) for one in conditions if isinstance(one.left, Call) and not one.left.order
+    }
+    return next((point for point in (last, "0") if f"{name}({point})" not in given), f"{last}/2")
+
+
+def _listed(key: str, equations: Sequence[_Equation]) -> Iterator[str]:
+    yield f"{key} = ["
+    for one in equations:
+        yield f"    {_quoted(one.text)},  # line {one.printed.span.line}: {_comment(one.printed)}"
+    yield "]"
+
+
+def _order(node: Expression, name: str) -> int:
+    """Return the order of the highest derivative of a field along x."""
+    if isinstance(node, Derivative):
+        return node.order if node.name == name else 0
+    inner = max((_order(child, name) for child in node.children), default=0)
+    holds = isinstance(node, Differentiated) and name in _named([node])
+    return inner + node.order if holds and isinstance(node, Differentiated) else inner
 
 
 def _inputs_of_conditions(conditions: Sequence[_Equation]) -> Iterator[str]:

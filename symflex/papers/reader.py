@@ -320,6 +320,9 @@ class LatexReader(SymbolReader):
         """Return a value with the power that follows it."""
         raised = False
         while self.text in ("^", "_", "**") or self.text in PRIMES:
+            if self.notation.fields and not raised and (order := self.slopes()):
+                value = Differentiated(self.expression_of(value), order, span=self.span(start))
+                continue
             if self.text == "_":
                 self.refuse("a subscript of a bracket is not read")
             if self.text in PRIMES:
@@ -337,6 +340,18 @@ class LatexReader(SymbolReader):
             value = power_of_value(value, exponent, self.span(start), self.refuse)
             raised = True
         return value
+
+    def slopes(self) -> int:
+        """Take primes, or a subscript of x, behind a bracket; return how many."""
+        count = 0
+        while self.text in PRIMES:
+            count += PRIMES[self.take().text]
+        if self.text == "_" and not count:
+            end = group_end(self.tokens, self.at + 1)
+            index = text_of(t for t in self.tokens[self.at + 1 : end] if t.text not in "{},")
+            if set(index) == {"x"}:
+                count, self.at = len(index), end
+        return count
 
     def group(self) -> Value:
         """Return what an argument is: a group, a digit, a letter, or a command with its arguments."""
@@ -718,6 +733,8 @@ class LatexReader(SymbolReader):
 
     def placed(self, value: Expression) -> Expression:
         """Return a field, or its derivative along x, at the point that follows it, if one does."""
+        if value == Name("delta") and self.text == "(":
+            self.refuse("a load at a point is not read", "divide the field there, and load the end of a part")
         name, order = (value.name, value.order) if isinstance(value, Derivative) else (value.name, 0)  # type: ignore[attr-defined]
         inner: Sequence[LatexToken] = ()
         if self.text == "(" and (end := self.end_of_bracket(self.at)) > 0:

@@ -305,11 +305,30 @@ def _opened(tokens: Sequence[LatexToken]) -> list[LatexToken]:
             out.append(LatexToken(row, token.span))
             length = re.match(r"\[-?[\d.]+(pt|mm|cm|ex|em|in|\\\w+)?\]", text_of(tokens[i : i + 12]))
             i += sum(1 for _ in range(i, i + len(length[0]))) if length and "\\" not in length[0] else 0
+        elif token.text == "&" and row == r"\\" and _separates(tokens, i, out):
+            out.append(LatexToken(row, token.span))
         elif token.text not in ("&", r"\&"):
             out.append(token)
     if opened:
         raise refusal(tokens[-1].span, r"a \begin has no \end", "the display is cut off")
     return out
+
+
+def _separates(tokens: Sequence[LatexToken], at: int, before: Sequence[LatexToken]) -> bool:
+    r"""Tell whether a column of ``a &= b & c &= d`` ends here, as equations stand on both sides."""
+    row: list[LatexToken] = []
+    for token, depth in with_depth(reversed(before)):
+        if token.text in (r"\\", r"\cr") and not depth:
+            break
+        row.insert(0, token)
+    following = []
+    for token, depth in with_depth(tokens[at:]):
+        if not depth and token.text in (r"\\", r"\cr", r"\end"):
+            break
+        following.append(token)
+    shown = [t for t in following if t.text != "&" and t.text not in WIDE]
+    is_joined = not shown or shown[0].text in COMPARED or not row or row[-1].text in COMPARED
+    return not is_joined and has_relation(row) and has_relation(shown)
 
 
 def _is_opened(

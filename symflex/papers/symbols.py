@@ -80,6 +80,8 @@ class PaperNotation:
     signals: frozenset[str] = frozenset()  # those of them that vary: outputs, inputs, unknowns
     # What dots and primes mean: nothing, derivatives in time, or derivatives in time and along x.
     motion: Literal["", "time", "field"] = ""
+    # What varies along x: their primes, and subscripts such as w_{xxt}, are derivatives.
+    fields: frozenset[str] = frozenset()
 
     def with_names(self, more: Mapping[PrintedSymbol, str]) -> PaperNotation:
         """Return the notation with further symbols, which hide others."""
@@ -282,8 +284,11 @@ class SymbolReader:
         words = [m for m in marks if not (is_moving and m in DOTS)]
         self.at = end
         index, primes, label, position = self.scripts(PrintedSymbol(base, "_".join(words), inner))
-        if primes and not is_moving:
+        if base in self.notation.fields and index and set(index) <= {"x", "t"}:  # w_{xt}
+            dots, primes, index = dots + index.count("t"), primes + index.count("x"), ""
+        if primes and not (is_moving and (self.notation.motion == "time" or base in self.notation.fields)):
             words.append("p" * primes)
+            primes = 0
         symbol = PrintedSymbol(base, "_".join(words), inner + index + (f"^{label}" if label else ""))
         self.at = at
         return symbol, position, dots, primes
@@ -499,6 +504,7 @@ class SymbolReader:
         kept = [t.text for t in self.tokens[start : self.at] if t.text not in "{}_^"]
         if self.notation.motion:  # derivatives are no other symbols
             kept = [text for text in kept if ACCENTED.get(text) not in DOTS and text not in PRIMES]
+            kept = kept[:1] if name in self.notation.fields or "(" in kept else kept
         kept = [text for i, text in enumerate(kept) if text not in FONTS or not i]
         typed = " ".join(sorted(kept))
         if not self.bound and self.typed.setdefault(name, typed) != typed:

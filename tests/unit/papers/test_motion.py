@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
+from scipy.linalg import expm
 
 from symflex.errors import SpecError, Text
 from symflex.papers.motion import motion_specification
 from symflex.papers.source import read_text
 from symflex.pipeline import loads
+from symflex.transfer import bind
+from symflex.transfer.of_model import derive_all
 
 
 def specification(latex: str) -> str:
@@ -179,3 +183,103 @@ def test_friction_beside_lagranges_terms_is_a_gap() -> None:
         r" + b\dot\theta = \tau \]"
     )
     assert "GAP: line 1 has more than the derivatives of L; add it to forces or dissipation" in text
+
+
+def value(text: str, at: complex, **values: str) -> complex:
+    """Return the first transfer function of a specification at a point, its parameters being given."""
+    for name, given in values.items():
+        text = text.replace(f"\n{name} = {{}}", f'\n{name} = "{given}"', 1)
+    model = loads(text)
+    return complex(bind(derive_all(model, model.transfer_functions[:1])[0])(at))
+
+
+def test_lagranges_equations_have_the_values_of_newtons() -> None:
+    # (M + m) x'' + m l theta'' = F and m l x'' + m l^2 theta'' + m g l theta = 0, solved by numpy.
+    at, cart, load, rope, g = 0.7 + 1.3j, 3.0, 2.0, 0.5, 9.81
+    swing = load * rope**2 * at**2 + load * g * rope
+    matrix = [[(cart + load) * at**2, load * rope * at**2], [load * rope * at**2, swing]]
+    expected = np.linalg.solve(matrix, [1, 0])[0]
+    found = value(specification(CRANE), at, M="3", m="2", l="0.5", g="9.81")
+    assert found == pytest.approx(expected, rel=1e-9)
+
+
+TIMOSHENKO = (
+    r"""\begin{align} \rho A w_{tt} - k' (w_x - \phi)_x &= 0 \\
+\rho I \phi_{tt} - EI \phi_{xx} - k'(w_x - \phi) &= 0 \end{align}
+\[ w(0,t)=\phi(0,t)=0, \quad EI \phi_x(L,t) = 0, \quad k'(w_x(L,t) - \phi(L,t)) = f(t) \]""",
+    r"""\begin{align} k_p (w'' - \phi') &= \rho A \ddot w \\
+EI\phi'' + k_p(w'-\phi) &= \rho I \ddot\phi \end{align}
+\begin{align} w(0,t)&=0 & \phi(0,t)&=0 & \phi'(L,t)&=0 & k_p(w'(L,t)-\phi(L,t)) &= f(t)\end{align}""",
+    r"""\begin{align} \rho A \frac{\partial^2 w}{\partial t^2}
+- \frac{\partial}{\partial x}\left[ k_p \left(\frac{\partial w}{\partial x} - \phi\right)\right] &= 0 \\
+\rho I \frac{\partial^2\phi}{\partial t^2}
+- \frac{\partial}{\partial x}\left(EI\frac{\partial\phi}{\partial x}\right)
+- k_p\left(\frac{\partial w}{\partial x}-\phi\right) &= 0 \end{align}
+\[ w = \phi = 0 \text{ at } x = 0, \qquad \frac{\partial\phi}{\partial x} = 0 \text{ at } x = L, \qquad
+k_p\left(\frac{\partial w}{\partial x}-\phi\right) = f(t) \text{ at } x = L \]""",
+)
+
+
+@pytest.mark.parametrize("latex", TIMOSHENKO)
+def test_coupled_fields_of_a_timoshenko_beam_are_one_problem(latex: str) -> None:
+    # First-order system of w, phi, w' and phi' along x, by the matrix exponential of scipy.
+    at, rho, area, inertia, modulus, k, length = 40 + 900j, 2700.0, 1.5e-4, 1.2e-9, 7e10, 3e6, 0.8
+    system = np.array(
+        [
+            [0, 0, 1, 0],
+            [0, 0, 0, 1],
+            [rho * area * at**2 / k, 0, 0, 1],
+            [0, (rho * inertia * at**2 + k) / (modulus * inertia), -k / (modulus * inertia), 0],
+        ]
+    )
+    whole = expm(system * length)
+    columns = whole[:, 2:]
+    ends = np.array([columns[3], k * (columns[2] - columns[1])])
+    expected = columns[0] @ np.linalg.solve(ends, [0, 1])
+    values = {"rho": rho, "A": area, "I": inertia, "E": modulus, "k_p": k, "L": length}
+    found = value(specification(latex), at, **{name: repr(v) for name, v in values.items()})
+    assert found == pytest.approx(expected, rel=1e-7)
+
+
+BEAM = {"EI w_{xxxx} + m w_{tt} = 0", r"EI w_{,xxxx} + m w_{,tt} = 0", r"EI w'''' + m \ddot w = 0"}
+BEAM |= {r"EI w^{(4)} + m \ddot w = 0"}
+
+
+@pytest.mark.parametrize("latex", sorted(BEAM))
+def test_subscripts_primes_and_orders_are_derivatives_of_a_field(latex: str) -> None:
+    text = specification(
+        rf"\[ {latex} \] \[ w(0,t) = w_x(0,t) = 0, w_{{xx}}(L,t) = 0, EI w_{{xxx}}(L,t) = F(t) \]"
+    )
+    assert """equation   = "E*I*w'''' + m*s^2*w = 0\"""" in text
+    assert equations(text) == ["w(0) = 0", "w'(0) = 0", "w''(L) = 0", "E*I*w'''(L) = F"]
+
+
+def test_a_prime_of_a_constant_is_no_derivative() -> None:
+    text = specification(
+        r"\begin{align} v_x + L' i_t + R' i &= 0 \\ i_x + C' v_t &= 0 \end{align}"
+        r"\[ v(0,t) = e(t), \quad i(l,t) = 0 \]"
+    )
+    assert equations(text) == ["v' + L_p*s*i + R_p*i = 0", "i' + C_p*s*v = 0", "v(0) = e", "i(l) = 0"]
+
+
+@pytest.mark.parametrize(
+    ("words", "conditions"),
+    [
+        ("clamped at $x=0$ and free at $x=L$", ["w(0) = 0", "w'(0) = 0", "w''(L) = 0", "w'''(L) = 0"]),
+        ("simply supported at $x=0$ and $x=L$", ["w(0) = 0", "w''(0) = 0", "w(L) = 0", "w''(L) = 0"]),
+    ],
+)
+def test_supports_said_in_words_are_conditions(words: str, conditions: list[str]) -> None:
+    text = specification(rf"The beam is {words}, \[ EI w_{{xxxx}} + m w_{{tt}} = q(t). \]")
+    assert equations(text) == conditions
+    assert f"# line 1: {words.partition(' and free')[0]}" in text
+
+
+def test_a_load_at_a_point_is_a_gap() -> None:
+    with pytest.raises(SpecError, match="a load at a point is not read"):
+        specification(r"\[ EI w_{xxxx} + m w_{tt} = f(t)\delta(x - a) \]")
+
+
+def test_an_output_is_taken_where_a_field_may_move() -> None:
+    text = specification(r"\[ y_{tt} = c^2 y_{xx}, \quad y(0,t)=u(t), \quad y(L,t)=0 \]")
+    assert 'Y = "y(L/2)"' in text

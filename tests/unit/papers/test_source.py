@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from symflex.errors import SpecError, Text
-from symflex.papers.source import Paper, read_paper, read_text, statements, text_of
+from symflex.papers.source import Paper, read_paper, read_text, statements, text_of, tokens_of
 
 PAPER = r"""\documentclass{article} % \[ no \]
 \newcommand{\w}{\omega}
@@ -125,3 +125,16 @@ def test_hostile_files_end_in_a_typed_error_or_in_formulas(text: str) -> None:
                 statements(display.tokens)
     except SpecError as error:
         assert all(d.code in ("SF103", "SF115") and d.span is not None for d in error.diagnostics)
+
+
+@pytest.mark.parametrize(
+    ("latex", "count"),
+    [
+        (r"\begin{align} a &= b & c &= d \end{align}", 2),
+        (r"\begin{align} a &= b & &= c \end{align}", 1),
+        (r"\begin{eqnarray} a & = & b \\ & & + c \end{eqnarray}", 1),
+        (r"\begin{alignat}{2} x &+ y &&= 3 \end{alignat}", 1),
+    ],
+)
+def test_columns_are_equations_where_both_have_a_relation(latex, count):
+    assert len(statements(tokens_of(Text.alone("f", latex)))) == count
