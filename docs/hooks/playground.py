@@ -1,16 +1,21 @@
 """The playground: what runs symflex in a browser, laid beside the page when there is a folder with it.
 
 ``SYMFLEX_WEBASSEMBLY`` names the folder, with Pyodide from npm and wheels for it, as ``.ci/run`` fetches
-them. Without one the site has the page, which says how to build it whole. ``python docs/hooks/playground.py
-FOLDER`` lays out the page alone, to be served from there.
+them. Without one the site has the page, which says how to build it whole. What a browser keeps lies in a
+folder named by what is in it. ``python docs/hooks/playground.py FOLDER`` lays out the page alone, to be
+served from there.
 """
 
 from __future__ import annotations
 
+import hashlib
 import io
 import json
 import os
+import shutil
+import subprocess
 import sys
+import tempfile
 import tomllib
 import zipfile
 from pathlib import Path
@@ -56,16 +61,37 @@ def parts() -> Iterator[tuple[str, bytes]]:
     runtime = os.environ.get("SYMFLEX_WEBASSEMBLY")
     known: dict[str, object] = {"examples": [example(name) for name in EXAMPLES]}
     if runtime:
-        folder = Path(runtime)
-        for name in RUNTIME:
-            yield f"runtime/{name}", (folder / "node_modules" / "pyodide" / name).read_bytes()
-        wheels = sorted(folder.glob("*.whl"))
-        for wheel in wheels:
-            yield f"wheels/{wheel.name}", wheel.read_bytes()
-        yield "wheels/symflex.zip", package()
-        known["wheels"] = [*(f"wheels/{wheel.name}" for wheel in wheels), "wheels/symflex.zip"]
-        yield "letters.json", json.dumps(widths()).encode()
+        kept = packed(dict(program(Path(runtime))))
+        folder = hashlib.sha256(b"".join(kept.values())).hexdigest()[:16]
+        known["kept"] = [f"{folder}/{name}" for name in kept]
+        yield from ((f"{folder}/{name}", content) for name, content in kept.items())
     yield "parts.json", json.dumps(known, ensure_ascii=False).encode()
+
+
+def program(runtime: Path) -> Iterator[tuple[str, bytes]]:
+    """Yield names and contents of what runs symflex."""
+    for name in RUNTIME:
+        yield f"runtime/{name}", (runtime / "node_modules" / "pyodide" / name).read_bytes()
+    wheels = sorted(runtime.glob("*.whl"))
+    for wheel in wheels:
+        yield f"wheels/{wheel.name}", wheel.read_bytes()
+    yield "wheels/symflex.zip", package(any(wheel.name.startswith("numpy-") for wheel in wheels))
+
+
+def packed(files: dict[str, bytes]) -> dict[str, bytes]:
+    """Return the files such that a browser starts sooner, where there is a program that packs them so."""
+    node = shutil.which("node")
+    if node is None:
+        return files
+    with tempfile.TemporaryDirectory() as made:
+        folder = Path(made)
+        for name, content in files.items():
+            (folder / name).parent.mkdir(exist_ok=True)
+            (folder / name).write_bytes(content)
+        hooks = ROOT / "docs" / "hooks"
+        model = ROOT / "derivations" / f"{EXAMPLES[0]}.toml"
+        subprocess.run([node, hooks / "pack.mjs", folder, hooks / "packing.py", model], check=True)
+        return {name: (folder / name).read_bytes() for name in files}
 
 
 def example(name: str) -> dict[str, str]:
@@ -96,22 +122,33 @@ def widths() -> dict[str, dict[str, float]]:
     return found
 
 
-def package() -> bytes:
-    """Return symflex as an archive."""
-    packed = io.BytesIO()
-    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
-        for path in sorted((ROOT / "symflex").rglob("*")):
-            if path.is_file() and path.suffix != ".pyc":
-                entry = zipfile.ZipInfo(path.relative_to(ROOT).as_posix(), MOMENT)
-                entry.compress_type = zipfile.ZIP_DEFLATED
-                archive.writestr(entry, path.read_bytes())
-    return packed.getvalue()
+def package(has_numpy: bool) -> bytes:
+    """Return symflex, and the page's own part in Python, as an archive."""
+    sources = {
+        path.relative_to(ROOT).as_posix(): path.read_bytes()
+        for path in sorted((ROOT / "symflex").rglob("*"))
+        if path.is_file() and path.suffix != ".pyc"
+    }
+    for name in ("answers.py", "letters.py"):
+        sources[name] = (PAGE / name).read_bytes()
+    if not has_numpy:
+        sources["numpy.py"] = (PAGE / "arrays.py").read_bytes()
+    sources["letters.json"] = json.dumps(widths()).encode()
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in sources.items():
+            entry = zipfile.ZipInfo(name, MOMENT)
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            archive.writestr(entry, content)
+    return out.getvalue()
 
 
 def lay_out(folder: Path) -> None:
     """Write the page and its parts as the site has them."""
     files = {
-        f"playground/{path.name}": path.read_bytes() for path in sorted(PAGE.iterdir()) if path.is_file()
+        f"playground/{path.name}": path.read_bytes()
+        for path in sorted(PAGE.iterdir())
+        if path.is_file() and path.suffix != ".py"
     }
     files |= {f"playground/{name}": content for name, content in parts()}
     files[f"stylesheets/{FONT}"] = (ROOT / "symflex" / "report" / "fonts" / FONT).read_bytes()

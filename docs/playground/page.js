@@ -349,6 +349,14 @@ async function parts() {
     }
 }
 
+/** Have everything kept that the page loaded, for a time without a network. */
+async function keepAll(program) {
+    await navigator.serviceWorker?.register(trusted(new URL("offline.js", import.meta.url).href));
+    const { active } = (await navigator.serviceWorker?.ready) ?? {};
+    const loaded = performance.getEntriesByType("resource").map(({ name }) => name).filter((name) => !name.startsWith("blob:"));
+    active?.postMessage([location.pathname, "worker.js", ...loaded, ...program]);
+}
+
 let examples = [];
 
 async function begin() {
@@ -365,7 +373,7 @@ async function begin() {
 
 async function start() {
     const known = await parts();
-    if (!known.wheels) {
+    if (!known.kept) {
         say("Not included");
         document.querySelector("main").replaceChildren(made("div", { class: "notice" },
             made("p", {}, "This copy of the documentation was built without the files that run symflex in a browser. Build it with them:"),
@@ -382,9 +390,9 @@ async function start() {
         for (const id of ["pair", "over"]) here(id).replaceChildren();
         run();
     });
-    navigator.serviceWorker?.register(trusted(new URL("offline.js", import.meta.url).href)).catch(() => {});
     thread.ready.catch((error) => say(`symflex did not start: ${error.message}`));
     await begin();
+    await keepAll(known.kept).catch(() => {}); // a browser that keeps nothing shows the page all the same
 }
 
 say("Starting", true);

@@ -11,19 +11,14 @@ async function bytes(name) {
 }
 
 async function started() {
-    const { wheels } = JSON.parse(new TextDecoder().decode(await bytes("parts.json")));
+    const { kept } = JSON.parse(new TextDecoder().decode(await bytes("parts.json")));
     say("Loading Python");
-    const packed = Promise.all(wheels.map(bytes));
-    const sources = Promise.all(["answers.py", "arrays.py", "letters.py", "letters.json"].map(bytes));
-    const { loadPyodide } = await import("./runtime/pyodide.mjs");
-    const python = await loadPyodide({ indexURL: new URL("runtime/", import.meta.url).href });
+    const packed = Promise.all(kept.filter((name) => name.includes("/wheels/")).map(bytes));
+    const runtime = new URL(kept.find((name) => name.endsWith("/pyodide.mjs")), import.meta.url).href;
+    const { loadPyodide } = await import(runtime);
+    const python = await loadPyodide({ indexURL: new URL(".", runtime).href });
     say("Unpacking symflex");
     for (const wheel of await packed) python.unpackArchive(wheel, "zip", { extractDir: "/package" });
-    const [answers, arrays, letters, widths] = await sources;
-    python.FS.writeFile("/package/answers.py", answers);
-    python.FS.writeFile("/package/letters.py", letters);
-    python.FS.writeFile("/package/letters.json", widths);
-    if (!wheels.some((name) => /^wheels\/numpy-/.test(name))) python.FS.writeFile("/package/numpy.py", arrays);
     say("Starting symflex");
     return python.runPython(`
 import sys

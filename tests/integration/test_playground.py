@@ -9,6 +9,7 @@ import importlib.util
 import json
 import os
 import threading
+import time
 
 import pytest
 
@@ -224,9 +225,12 @@ def test_nothing_of_a_hundred_hostile_texts_runs(browser):
 
 
 def test_without_a_network_the_page_opens_and_computes_again(browser, server):
-    browser.run("navigator.serviceWorker.ready.then(() => true)")
-    browser.open(browser.address)  # all of it by way of the part that keeps it
-    browser.run("symflex.settled()")
+    kept = browser.run("fetch('parts.json').then((found) => found.json())")["kept"]
+    held = "caches.open('symflex-playground').then((c) => c.keys()).then((all) => all.map((r) => r.url))"
+    until = time.monotonic() + 60
+    while not all(any(url.endswith(name) for url in browser.run(held)) for name in kept):
+        assert time.monotonic() < until
+        time.sleep(0.05)
     server.shutdown()
     server.server_close()
     browser.open(browser.address)
