@@ -21,6 +21,7 @@ from symflex.expressions import (
     nodes,
     once,
     quotient,
+    replace_node,
     sums_in,
 )
 from symflex.print.forms.arrange import Arranger, is_long_product, length, reading
@@ -48,7 +49,7 @@ from symflex.print.forms.printed import (
     lacks,
     require,
 )
-from symflex.print.forms.shapes import S, powers_of, rebuilt, shaped
+from symflex.print.forms.shapes import S, powers_of, shaped
 from symflex.print.read_back import read_back
 from symflex.transfer import AnyTransferFunction, NestedTransferFunction, TransferFunction
 
@@ -327,22 +328,18 @@ def with_repeated_named(tf: TransferFunction, form: PrintedForm) -> PrintedForm:
         """Return parts with names, and then what the new ones stand for, which bears names, too."""
         each = list(parts)
         for total, name in put.items():
-            each = [_with(part, total, name) for part in each]
+            each = [replace_node(part, total, name) for part in each]
         while (repeated := _most_repeated(each)) is not None:
             put[repeated] = Name(*naming.take(REPEATED))
-            each = [*(_with(part, repeated, put[repeated]) for part in each), repeated]
+            each = [*(replace_node(part, repeated, put[repeated]) for part in each), repeated]
         return each
 
     den, *below = named(form.den)
     num, *above = named(form.num)
     called = (name.name for name in put.values() if isinstance(name, Name))
-    totals = (tidied_sum(total, tf.base.index) for total in (*below, *above))
+    # A sum without new names in it is arranged already.
+    totals = (total if total in put else tidied_sum(total, tf.base.index) for total in (*below, *above))
     return replace(form, num=num, den=den, where=(*zip(called, totals, strict=True), *form.where))
-
-
-def _with(whole: Expression, total: Expression, name: Expression) -> Expression:
-    """Return an expression with a name in place of a sum."""
-    return rebuilt(whole, lambda part: name if part == total else part)
 
 
 def _most_repeated(parts: Sequence[Expression]) -> Sum | None:

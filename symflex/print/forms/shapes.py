@@ -637,7 +637,12 @@ def _decimals(model: Model, num: Expression, den: Expression) -> tuple[Expressio
     if all(x.denominator == 1 for x in written) or any(n.name not in ("exp", "sqrt") for n in calls):
         return num, den
     wanted = {*written, Fraction(1)}
-    typed = {_texts(n.terms) for _, e in model.expressions() for n in nodes(e) if isinstance(n, Sum)}
+    typed = {
+        _in_powers(map(powers_of, n.terms))
+        for _, e in model.expressions()
+        for n in nodes(e)
+        if isinstance(n, Sum)
+    }
     numbers = [n.value.numerator for e in (num, den) for n in nodes(e) if isinstance(n, Number)]
     longest = max((len(str(n).strip("-0")) for n in numbers), default=0)
     doubles = [n for n in map(_digits_of, {*written}) if n > MOST]
@@ -682,7 +687,15 @@ def _decimals(model: Model, num: Expression, den: Expression) -> tuple[Expressio
     return new if length(*new) <= MORE * length(num, den) else (num, den)
 
 
-def _typed_scale(total: Sum, wanted: set[Fraction], typed: set[frozenset[str]]) -> Fraction:
+_Powers = frozenset[tuple[Fraction, frozenset[tuple[Expression, int]]]]
+
+
+def _in_powers(terms: Iterable[tuple[Fraction, Mapping[Expression, int]]]) -> _Powers:
+    """Return the terms of a sum, however their numbers and squares are written."""
+    return frozenset((front, frozenset(powers.items())) for front, powers in terms)
+
+
+def _typed_scale(total: Sum, wanted: set[Fraction], typed: set[_Powers]) -> Fraction:
     """Return the number that divides a sum to be typed, have the numbers wanted, or ``s^n`` in front."""
     parts = [powers_of(t) for t in total.terms]
     fronts = [abs(f) for f, _ in parts]
@@ -704,9 +717,7 @@ def _typed_scale(total: Sum, wanted: set[Fraction], typed: set[frozenset[str]]) 
         is_large = is_large and not any("/" in number_text(x) for x in divided)
         as_usual = is_monic and divided[0] == 1 and (is_large or sum(is_whole) >= len(divided) - 1)
         return (
-            is_typed
-            and _texts(product_of([number(f / divisor), of_powers(Fraction(1), p)]) for f, p in parts)
-            in typed,
+            _in_powers((f / divisor, p) for f, p in parts) in typed,
             is_typed and (divisor == 1 or not has_symbols),
             as_usual,
             has_symbols and len({*names(total)}) == 1 and all(is_whole),  # as 16*K_0^4 - 20*K_0^2 + 5

@@ -710,6 +710,50 @@ outputs.y = "{typed[0]}/{typed[1]}*u"
         assert printed(tf_of(text, "y", "u")) == typed
 
 
+MIRROR = """symflex = 1
+parameters = { K = 1, g = 0.5, f_1 = "5.2 kHz", z_1 = 0.02, T = "30 us", k_v = "1.2e7 1/s^2" }
+inputs.r = {}
+outputs.E = "r - y"
+[blocks]
+V = "k_v*(0.4*s^2 + 2*z_1*2*pi*f_1*s + (2*pi*f_1)^2)/(s^2 + 2*z_1*2*pi*f_1*s + (2*pi*f_1)^2)/s^2"
+[signals]
+y = "K*(V + g/(T*s + 1))*(r - y)"
+"""
+
+
+def test_a_sum_keeps_its_typed_decimal_and_its_typed_square():
+    den = printed(tf_of(MIRROR, "E", "r"))[1]
+    assert "k_v*(0.4*s^2 + 2*z_1*(2*pi*f_1)*s + (2*pi*f_1)^2)" in den
+
+
+def test_a_repeated_sum_is_one_name_written_as_it_is_typed():
+    text = """symflex = 1
+inputs.r = { unit = "m" }
+outputs.E = "e"
+[parameters]
+K   = 1
+T   = "30 us"
+k_v = "1.2e7 1/s^2"
+f_1 = "5.2 kHz"
+z_1 = 0.02
+f_2 = "9.4 kHz"
+z_2 = 0.015
+T_l = "0.8 ms"
+f_l = "3 kHz"
+g_m = 0.5
+T_m = "60 us"
+[blocks]
+P_v = "k_v*(1/s^2 - 0.6/(s^2 + 2*z_1*f_1*s + f_1^2))"
+P_m = "f_2^2/(s^2 + 2*z_2*f_2*s + f_2^2)"
+[signals]
+e = "r - exp(-s*T)*y"
+y = "K*(P_v*(1 + T_l*s)/(1 + s/f_l) + P_m*g_m/(1 + T_m*s))*e"
+"""
+    form = print_form(tf_of(text, "E", "r"), is_read=True)
+    lines = {name: format_expression(meaning) for name, meaning in form.where}
+    assert lines == {"P": "s^2 + 2*z_1*(2*pi*f_1)*s + (2*pi*f_1)^2"}
+
+
 def test_factors_without_parameters_are_typed_or_end_with_one():
     text = """symflex = 1
 blocks.C = { type = "pid", k_p = "2.5", k_i = "10", k_d = "0.1", T_f = "0.01" }
