@@ -14,10 +14,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from flint import fmpz_mpoly
-
-from symflex.algebra import LAPLACE, Factored
-from symflex.algebra.ring import terms_of
+from symflex.algebra import LAPLACE, Factored, by_powers, degree_in
 from symflex.expressions import Attribute, names, names_among, number
 from symflex.library.elements import COMPONENTS
 from symflex.model import ContactPort, Model, PlacedElement
@@ -51,33 +48,28 @@ def without_storage(model: Model, port: ContactPort) -> Model:
     return replace(model, elements=tuple(kept)) if kept else model
 
 
-def without_inertia(bound: BoundTransferFunction) -> BoundTransferFunction | None:
-    """Return Y without the ``m s`` by which 1/Y grows, where no wave grows as fast; None if there is none.
+def without_ladder(bound: BoundTransferFunction) -> BoundTransferFunction:
+    """Return a function with the same sign of the real part, without the ``c s`` by which Y or 1/Y grows.
 
-    Equations of motion have no element that could be left out, and a mass in them does as well as one at a
-    node: ``1/Y - m s`` has the real part of ``1/Y`` on the axis.
+    Such are a mass in equations of motion, and the coil and the capacitor of a filter at a port, one after
+    the other (Cauer 1926). Beside their powers of s, what is left of the real part far out has few digits.
     """
     ring = bound.ratio.ring
-    num, den = bound.ratio.numerator().expand(), bound.ratio.denominator().expand()
-    of_num, of_den = _highest(num), _highest(den)
-    if of_num is None or of_den is None or of_den[0] != of_num[0] + 1:
-        return None
-    s = ring.generator(ring.names[0])
-    rest = of_num[1] * den - of_den[1] * s * num
-    if of_num[1] * of_den[1] < 0 or rest.is_zero():
-        return None
-    ratio = Factored.polynomial(ring, of_num[1] * num) / Factored.polynomial(ring, rest)
+    s, kernels = ring.generator(ring.names[0]), {k.generator for k in bound.kernels.kernels}
+    parts = [f.expand() for f in (bound.ratio.numerator(), bound.ratio.denominator())]
+    for _ in range(degree_in(parts[0], 0) + degree_in(parts[1], 0)):
+        above = int(degree_in(parts[1], 0) > degree_in(parts[0], 0))
+        leads = [by_powers(ring, f) for f in parts]
+        degree, other = (max(leads[i]) for i in (above, 1 - above))
+        lead, lower = leads[above][degree], leads[1 - above][other]
+        if degree != other + 1 or kernels & ring.used_in((lead, lower)):
+            break
+        parts[above] = lower * parts[above] - lead * s * parts[1 - above]
+        parts[1 - above] *= lower
+        if parts[above].is_zero():
+            return replace(bound, ratio=Factored.number(ring, 0), parts=None, hidden=())
+    ratio = Factored.polynomial(ring, parts[0]) / Factored.polynomial(ring, parts[1])
     return replace(bound, ratio=ratio, parts=None, hidden=())
-
-
-def _highest(polynomial: fmpz_mpoly) -> tuple[int, int] | None:
-    """Return the highest power of s and its coefficient, where no wave or delay multiplies it."""
-    powers = [(dict(places), c) for places, c in terms_of(polynomial) if all(i == 0 for i, _ in places)]
-    degree = max((places.get(0, 0) for places, _ in powers), default=None)
-    others = (dict(places).get(0, 0) for places, _ in terms_of(polynomial))
-    if degree is None or max(others) > degree:
-        return None
-    return degree, next(c for places, c in powers if places.get(0, 0) == degree)
 
 
 def _of_s(definitions: tuple[Definition, ...], model: Model) -> set[str]:

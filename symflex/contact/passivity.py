@@ -22,7 +22,8 @@ from flint import acb_poly, arb
 from symflex.algebra import Factored
 from symflex.balls import precision
 from symflex.contact.environment import Example, destabilising
-from symflex.contact.lossless import without_inertia, without_storage
+from symflex.contact.lossless import without_ladder, without_storage
+from symflex.contact.one_place import PROOF, at_one_place
 from symflex.contact.port import at_port
 from symflex.contact.real_part import ActiveBand, LeastPart, RealPart, least_part, real_part
 from symflex.contact.repair import Repair, repairs
@@ -149,6 +150,18 @@ def find_passivity(
     return _Machine.of(model, port, digits).verdict(is_explained=is_explained)
 
 
+def passive_by_parts(model: Model, digits: int) -> str:
+    """Return why a machine is passive whose sources act at one place; empty if that is not proved."""
+    parts = at_one_place(model)
+    if parts is None:
+        return ""
+    part, place, rest = parts
+    if not energy_proof(rest).is_passive:
+        return ""
+    is_passive = _Machine.of(part, place, digits).verdict(is_explained=False, is_part=True).passive
+    return PROOF.format(place.name) if is_passive else ""
+
+
 def driving_function(model: Model, port: str | None) -> BoundTransferFunction:
     """Return the driving-point function of a machine at a port; SF502 where it is not written out."""
     bound = _Machine.of(model, port, 12).bound
@@ -199,7 +212,7 @@ class _Machine:
         assert self.bound is not None
         return locate(self.bound, digits=self.digits + 10, with_zeros=False)
 
-    def verdict(self, *, is_explained: bool) -> PortPassivity:
+    def verdict(self, *, is_explained: bool, is_part: bool = False) -> PortPassivity:
         """Return whether it is passive."""
         energy = energy_proof(self.driven)
         bound = self.bound
@@ -211,6 +224,8 @@ class _Machine:
                 return proved
             real = real_part(bound, self.digits)
             return replace(proved, least=least_part(bound, (), self.digits), is_lossless=real.is_zero)
+        if not is_part and (proof := passive_by_parts(self.driven, self.digits)):
+            return replace(asked, passive=True, proof=proof)
         if bound is None:
             return replace(asked, reasons=(NOT_WRITTEN,))
         real = self._real_part(bound)
@@ -239,25 +254,26 @@ class _Machine:
         return replace(found, repair=repair, example=example)
 
     def _real_part(self, bound: BoundTransferFunction) -> RealPart:
-        """Return the sign of the real part, without storage at the port where waves or delays are."""
+        """Return the sign of the real part, with waves or delays of what stores no energy at the port."""
         if bound.is_rational:
             return real_part(bound, self.digits)
+        found = real_part(without_ladder(self._without_storage or bound), self.digits)
+        if not found.reasons:
+            return found
+        return min(found, real_part(bound, self.digits), key=lambda each: len(each.reasons))
+
+    @property
+    def _without_storage(self) -> BoundTransferFunction | None:
+        """The driving-point function without what stores energy at the port; None where nothing moves."""
         bare = without_storage(self.model, self.port)
-        if len(bare.elements) < len(self.model.elements) or bare != self.model:
-            driven, pair = at_port(bare, self.port)
-            try:
-                (alike,) = derive_bound(driven, [pair])
-            except SymflexError:
-                return real_part(bound, self.digits)
-            if not alike.is_zero:
-                found = real_part(alike, self.digits)
-                if not found.reasons:
-                    return found
-        found = real_part(bound, self.digits)
-        other = without_inertia(bound) if found.reasons else None
-        if other is not None and not (instead := real_part(other, self.digits)).reasons:
-            return instead
-        return found
+        if bare == self.model:
+            return None
+        driven, pair = at_port(bare, self.port)
+        try:
+            (alike,) = derive_bound(driven, [pair])
+        except SymflexError:
+            return None
+        return None if alike.is_zero else alike
 
     def _faults(self, bound: BoundTransferFunction) -> tuple[tuple[str, ...], tuple[str, ...]]:
         """Return what is wrong with poles and at infinity, and what is not proved of that."""

@@ -49,6 +49,7 @@ TERMS = 3  # of power series: a value, its slope and its curvature
 NEXT_TO_ZERO = 1e-7  # share of the reach of series about 0, within which a real part is that at 0
 FINE_RATIO = 1.05  # of the ends of pieces on which these series are evaluated
 SHRINKINGS = 40  # halvings of the piece about 0 on which the sign is sought
+NARROW = 10  # bits of an interval that is said to be a frequency
 ASIDE = 0.4873  # where an interval is looked at, which is no root of a number that people write
 
 
@@ -101,6 +102,17 @@ def least_part(bound: BoundTransferFunction, bands: Sequence[ActiveBand], digits
         return _least_of_polynomials(bound, digits)
     inside = [band for band in bands if band.high is not None]
     return _LeastSearch(bound, digits).least(inside) if inside and len(inside) == len(bands) else None
+
+
+def _open_at(omega: arb) -> str:
+    """Return that a sign is open at a frequency, or in an interval of them."""
+    if omega.rel_accuracy_bits() > NARROW:
+        return f"whether the real part touches zero at {short_hertz(omega)} Hz"
+    return _open_in(omega.lower(), omega.upper())
+
+
+def _open_in(low: arb, high: arb) -> str:
+    return f"the real part between {short_hertz(low)} and {short_hertz(high)} Hz"
 
 
 def _hertz(omega: arb) -> float:
@@ -220,9 +232,9 @@ class _WavePart:
         reasons: list[str] = []
         waves = KernelFunction(self.bound, Factored.polynomial(self.bound.ratio.ring, self.function.b))
         far = waves.frequency_of(WAVES)
-        low = self._next_to_zero(far)
-        if low is None:
-            low = far / BELOW
+        known = self._next_to_zero(far)
+        low = known or far / BELOW
+        if known is None:
             reasons.append(f"the real part below {short_hertz(arb(low))} Hz")
         tail = self._tail(waves.frequency_of(1.0))
         high, beyond = tail or (waves.frequency_of(WAVES * ENOUGH), 0)
@@ -237,7 +249,8 @@ class _WavePart:
             self.digits + SPARE_DIGITS // 2,
             MOST_INTERVALS,
         )
-        return self._between(crossings.roots, crossings.undecided, (low, high), beyond, reasons)
+        found, limits = (crossings.roots, crossings.undecided), (low, high)
+        return self._between(*found, limits, beyond, reasons, is_open_below=known is None)
 
     def _between(
         self,
@@ -246,39 +259,38 @@ class _WavePart:
         limits: tuple[float, float],
         beyond: int,
         reasons: list[str],
+        *,
+        is_open_below: bool,
     ) -> RealPart:
-        """Return bands from the places at which the sign changes, or may."""
+        """Return bands from the places at which the sign changes, or may.
+
+        Where it may, no band reaches into the interval.
+        """
         places = sorted((*roots, *undecided), key=lambda omega: float(omega.mid()))
-        ends = [arb(limits[0]), *places, arb(limits[1])]
-        signs = [self._sign(low, high) for low, high in pairwise(ends)]
-        changes = [*roots]
-        for omega in undecided:
-            i = next(i for i, place in enumerate(places) if place is omega)
-            if 0 not in (signs[i], signs[i + 1]) and signs[i] != signs[i + 1]:
-                changes.append(omega)
-            else:
-                reasons.append(f"whether the real part touches zero at {short_hertz(omega)} Hz")
-        active: list[ActiveBand] = []
-        for sign, low, high in zip(signs, ends, ends[1:], strict=False):
-            if sign >= 0:
-                reasons += (
-                    [] if sign else [f"the real part between {short_hertz(low)} and {short_hertz(high)} Hz"]
-                )
-                continue
-            start = arb(0) if low is ends[0] else low
-            end = None if high is ends[-1] and beyond < 0 else high
-            if active and active[-1].high is start:
-                active[-1] = replace(active[-1], high=end)
-            else:
-                active.append(ActiveBand(start, end))
+        signs = [self._sign(x, y) for x, y in pairwise([arb(limits[0]), *places, arb(limits[1])])]
+        lows, highs = [arb(limits[0]) if is_open_below else arb(0)], list[arb | None]()
+        for omega, left, right in zip(places, signs, signs[1:], strict=False):
+            is_change = left * right < 0 or any(omega is root for root in roots)
+            highs.append(omega if is_change else omega.lower())
+            lows.append(omega if is_change else omega.upper())
+            reasons += [] if is_change else [_open_at(omega)]
+        highs.append(None if beyond < 0 else arb(limits[1]))
+        bands = [ActiveBand(low, high) for low, high in zip(lows, highs, strict=True)]
+        ends = [band.high or arb(limits[1]) for band in bands]
+        reasons += [
+            _open_in(band.low, end)
+            for band, end, sign in zip(bands, ends, signs, strict=True)
+            if not sign and band.low < end
+        ]
+        active = [band for band, sign in zip(bands, signs, strict=True) if sign < 0]
         if beyond < 0 and signs[-1] >= 0:
-            active.append(ActiveBand(ends[-1], None))
+            active.append(ActiveBand(arb(limits[1]), None))
         return RealPart(tuple(active), reasons=tuple(dict.fromkeys(reasons)))
 
     def _sign(self, low: arb, high: arb) -> int:
         """Return the sign in an interval of frequencies without a root; 0 where it is not known."""
         first, last = float(low.upper()), float(high.lower())
-        for share in (ASIDE, 0.25, 0.75):
+        for share in (ASIDE, 0.25, 0.75) if first < last else ():
             _, centre = self.function.on(arb(first + share * (last - first)), BITS)
             with precision(BITS):
                 value, _ = centre.crossing()

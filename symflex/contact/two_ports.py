@@ -35,6 +35,7 @@ from symflex.contact.passivity import (
     DOUBLE,
     NEGATIVE_RESIDUE,
     UNSTABLE,
+    passive_by_parts,
     residue_at,
 )
 from symflex.contact.port import at_port
@@ -55,7 +56,7 @@ from symflex.transfer.of_model import derive_bound
 SCHEMA = "symflex.two_ports/1"
 BITS = 160
 SHOWN_DIGITS = 6  # of impedances
-WAVES = "a machine with waves or filters whose delay is no constant is proved by energy alone"
+WAVES = "a machine with waves is proved by energy, and by what a controller does that acts where it measures"
 NOT_ALONE = "poles on the imaginary axis of a machine that is not reciprocal, or has equal modes there"
 
 
@@ -172,7 +173,11 @@ def find_two_ports(model: Model, names: Sequence[str], digits: int = 12) -> TwoP
         margin = None if conditions is None else conditions.least_eta(digits)
         return replace(asked, passive=True, absolutely_stable=True, proof=energy.reason, least=margin)
     if conditions is None:
-        return replace(asked, reasons=(WAVES,))
+        proof = passive_by_parts(driven, digits)
+        decided = True if proof else None
+        return replace(
+            asked, passive=decided, absolutely_stable=decided, proof=proof, reasons=() if proof else (WAVES,)
+        )
     faults, reasons = _faults(bounds, has_rank_one=conditions.is_reciprocal and conditions.has_rank_one)
     diagonal = [conditions.sign_of(f, digits) for f in conditions.diagonal]
     hermitian = [*diagonal, conditions.sign_of(conditions.determinant, digits)]

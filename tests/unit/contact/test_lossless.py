@@ -1,10 +1,13 @@
 """What stores energy right at a port is taken away; all else stays."""
 
+from math import acos, pi
+
 import pytest
 
 from symflex import pipeline
-from symflex.contact.lossless import without_storage
+from symflex.contact.lossless import without_ladder, without_storage
 from symflex.contact.passivity import find_passivity
+from symflex.contact.real_part import real_part
 from symflex.model.ports import port_named
 from tests.unit.contact.machines import ARM, LAGGED, machine
 
@@ -56,3 +59,20 @@ def test_a_wall_behind_a_mass_in_equations_is_passive_up_to_its_damping_over_hal
     # Re Z = b - K sin(omega T/2)/omega, which is negative next to 0 where K T/2 > b.
     model = pipeline.loads(WALL.replace("1 kN/m", stiffness))
     assert find_passivity(model, "hand", is_explained=False).passive is is_passive
+
+
+def test_a_filter_between_a_delayed_current_loop_and_the_grid_leaves_its_bands_where_they_are():
+    # A converter with an LCL filter: Re Z has the sign of R + K cos(omega T), however far out.
+    text = """symflex = 1
+[inputs]
+i = {}
+[outputs]
+v = "(s*3/5000 + 1/(s/100000 + 1/(s*9/5000 + 1/20 + 6*exp(-s*3/20000))))*i"
+"""
+    (impedance,) = pipeline.derive_bound(pipeline.loads(text), [("v", "i")])
+    bands = real_part(without_ladder(impedance), 12).active
+    corner = acos(-0.05 / 6)
+    for k, band in enumerate(bands[:5]):
+        ends = (corner + 2 * pi * k, 2 * pi * (k + 1) - corner)
+        assert [float(x.mid()) * 1.5e-4 for x in (band.low, band.high)] == pytest.approx(ends)
+    assert len(bands) >= 5

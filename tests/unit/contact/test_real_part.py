@@ -3,9 +3,10 @@
 from math import cos, pi, sin
 
 import pytest
+from flint import arb
 
 from symflex import pipeline
-from symflex.contact.real_part import least_part, real_part
+from symflex.contact.real_part import _WavePart, least_part, real_part
 
 
 def bound(formula):
@@ -70,3 +71,11 @@ def test_the_least_part_with_a_delay_is_enclosed():
     assert float(least.value.mid()) == pytest.approx(
         min(value(pi + k / 1e5) for k in range(-2000, 2000)), abs=1e-9
     )
+
+
+def test_no_band_reaches_into_frequencies_that_are_open():
+    search = _WavePart(bound("-1 + exp(-s)/2"), 12)
+    found = search._between((), (arb(2).union(4),), (1.0, 10.0), 0, [], is_open_below=True)
+    bands = [(float(b.low.mid()), float(b.high.mid())) for b in found.active]
+    assert bands == [pytest.approx((1, 2)), pytest.approx((4, 10))]
+    assert found.reasons == ("the real part between 0.31831 and 0.63662 Hz",)

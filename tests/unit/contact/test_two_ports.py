@@ -162,3 +162,21 @@ def test_waves_that_a_controller_drives_are_not_decided() -> None:
     )
     found = of(model)
     assert found.passive is None and found.reasons
+
+
+def test_a_lagged_motor_at_the_end_of_a_rod_is_passive_with_enough_friction_there() -> None:
+    # Re(b + K/(s (1 + s T))) is least at 0, b - K T, with K T = 2 * 0.5.
+    def rod(b: float) -> Model:
+        return Model(
+            parameters={"EA": 1, "rhoA": 1, "l": 1, "K": 2, "T": 0.5, "b": b},
+            elements={
+                "rod": {"type": "rod", "between": ["x", "y"], "EA": "EA", "rhoA": "rhoA", "l": "l"},
+                "act": {"type": "force_source", "at": "x", "f": "-K/(1 + T*s)*x"},
+                "slide": {"type": "damper", "between": ["x", "ground"], "b": "b"},
+            },
+            inputs={"F": {"force": "x"}},
+            outputs={"Y": "y"},
+        )
+
+    assert (of(rod(1)).passive, of(rod(1)).absolutely_stable) == (True, True)
+    assert of(rod(0.99)).passive is None
