@@ -114,14 +114,15 @@ class SizeOfExponentials:
             return total.upper()
         return None
 
-    def around(self, hole: Cell, poles: Sequence[acb], integrations: int) -> Ring | None:
+    def around(self, hole: Cell, poles: Sequence[acb], within: arb, integrations: int) -> Ring | None:
         """Return what all poles about an accumulation add: a sum on a ring (Trefethen and Weideman 2014).
 
         First comes the ring, with all ``poles`` that it contains; then the terms, and what they lack at most.
+        None if it does not fit into a radius [rad/s], or the function is not bounded on it.
         """
         with precision(2 * EFFORT.bits):
             ring = ring_about(hole, poles)
-            if ring is None:
+            if ring is None or not ring.reach < within:
                 return None
 
             def size_on(edge: float, low: float, high: float) -> arb | None:
@@ -182,8 +183,8 @@ class ModesBound(ABC):
         """How many modes are searched at most."""
         return self.slow
 
-    def ring(self, hole: Cell, poles: Sequence[acb], integrations: int) -> Ring | None:
-        """Return what all poles in a neighbourhood add where infinitely many accumulate."""
+    def ring(self, hole: Cell, poles: Sequence[acb], within: arb, integrations: int) -> Ring | None:
+        """Return what all poles in a neighbourhood add where infinitely many accumulate, within a radius."""
         return None
 
     def may_be_pole(self, root: Root) -> bool:
@@ -210,9 +211,9 @@ class BoundBySize(ModesBound):
         """How many modes are searched at most: no more than at first, where it takes long."""
         return EFFORT.continued_modes if self.function.length <= EFFORT.long else EFFORT.first_modes[1]
 
-    def ring(self, hole: Cell, poles: Sequence[acb], integrations: int) -> Ring | None:
+    def ring(self, hole: Cell, poles: Sequence[acb], within: arb, integrations: int) -> Ring | None:
         """Return what poles add that accumulate."""
-        return self.function.around(hole, poles, integrations)
+        return self.function.around(hole, poles, within, integrations)
 
 
 @dataclass(frozen=True, slots=True)

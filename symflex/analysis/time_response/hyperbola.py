@@ -118,13 +118,15 @@ def _trapezoidal(asked: Asked, numbers: range, bits: int, mu: float, step: float
         assert root is not None
         shift = root.shift / root.slope
         # Times are sums a + b, and so exponentials are products, as many as one of matrices holds.
-        outer, inner = asked.times.spread(numbers.start)
+        spread = asked.times.spread(numbers.start)
+        rows = -(-len(numbers) // len(spread.inner))
         starts, waits = list[list[acb]](), list[list[acb]]()
         for k in range(count + 1):
             w = acb(arb(MIDDLE), -arb(step) * k)
             s = arb(mu) * (1 - w.sin()) - shift
             weight = (1 + bool(k)) * function(s) * w.cos() / s**asked.integrations
-            starts.append([weight * (s * t).exp() for t in outer[: -(-len(numbers) // len(inner))]])
-            waits.append([(s * t).exp() for t in inner])
+            outer, inner = spread.exponentials(s)
+            starts.append([weight * grown for grown in outer[:rows]])
+            waits.append(inner)
         sums = (acb_mat(starts).transpose() * acb_mat(waits)).entries()[: len(numbers)]
         return [arb(step) * arb(mu) / (2 * arb.pi()) * total.real for total in sums]

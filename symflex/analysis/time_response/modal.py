@@ -14,7 +14,7 @@ force moves where nothing else supplies energy, see :mod:`~symflex.analysis.time
 from __future__ import annotations
 
 from cmath import sqrt as csqrt
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from math import log, pi
 
 from flint import acb, arb
@@ -41,7 +41,8 @@ from symflex.roots.root import overlap
 from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
 SEARCHED_TOO_LONG = "SF505"  # of a search that ends by itself; the user's own budgets end all
-BITS = bits_for_digits(2 * EFFORT.pole_digits)  # precision of sums
+BITS = bits_for_digits(2 * EFFORT.pole_digits)  # precision of terms
+SUM_BITS = EFFORT.bits  # of their sums, which need the digits of poles and none of those that residues lose
 CONTINUATION = (-1, 4, -6, 4)  # factors on the last four of a smooth sequence that give the next
 
 BOUNDS: Mapping[str, Callable[[BoundTransferFunction, int], tuple[ModesBound, int] | Refused]] = {
@@ -120,20 +121,11 @@ class BoundedModes:
             return None
 
     def _summed(self, count: int) -> PartialSum | None:
-        side, least = self._side, self._bounding.least
-        if side.is_finite:
+        least = self._bounding.least
+        located = None if self._side.is_finite else self._located(count)
+        if located is None:
             return None
-        continued = (
-            self._continued(count) if count > max(EFFORT.first_modes) and side.engine != LOSSLESS else None
-        )
-        if continued is not None:
-            reached, roots = continued
-        else:
-            wanted = Modes(min(count, EFFORT.axis_modes if side.engine == LOSSLESS else EFFORT.plane_modes))
-            side.extend(wanted.count, least)
-            if not side.prove(wanted).is_complete:
-                return None
-            reached, roots = side.reached, side.roots
+        reached, roots = located
         if reached in self._known:
             return self._known[reached]
         origin = proved_at_origin(self._bound, self._integrations)
@@ -142,8 +134,8 @@ class BoundedModes:
             return None
         with precision(BITS):
             radius = arb(reached).exp()
-            poles = [root for root in roots if self._may_be_pole(root, radius)]
-            around = self._about_accumulations(reached, [p.enclosure() for p in poles])
+            poles = self._poles(roots, radius)
+            around = self._about_accumulations(reached, poles)
             if around is None:
                 return None
             rings, terms, missing = around
@@ -158,7 +150,8 @@ class BoundedModes:
                 if term is None:
                     return None
                 terms.append(term)
-            values = values_of(terms, self._times)
+            with precision(SUM_BITS):
+                values = values_of(terms, self._times)
             bounds = [bound + missing for bound in tail.at_times]
             if tail.start is not None and self._times.seconds[0] == 0:
                 values[0], bounds[0] = tail.start, arb(0)
@@ -181,18 +174,35 @@ class BoundedModes:
             self._terms[id(root)] = root, term
         return term
 
+    def _located(self, count: int) -> tuple[float, list[Root]] | None:
+        """Return ln of a radius and all roots within, at most so many as are searched; None if unsure."""
+        side, is_lossless = self._side, self._side.engine == LOSSLESS
+        if count > max(EFFORT.first_modes) and not is_lossless:
+            continued = self._continued(count)
+            if continued is not None:
+                return continued
+        wanted = Modes(min(count, EFFORT.axis_modes if is_lossless else EFFORT.plane_modes))
+        side.extend(wanted.count, self._bounding.least)
+        with precision(BITS):
+            poles = self._poles(side.roots, arb(side.reached).exp())
+            # To prove that none is missing takes long, and is in vain where a ring does not fit.
+            if self._about_accumulations(side.reached, poles) is None:
+                return None
+        return (side.reached, side.roots) if side.prove(wanted).is_complete else None
+
     def _about_accumulations(
-        self, reached: float, poles: list[acb]
+        self, reached: float, poles: Sequence[Root]
     ) -> tuple[list[Annulus], list[ExponentialTerm], arb] | None:
         """Return rings about what poles accumulate at within a radius, what they add, and what that lacks."""
         rings, terms, missing = [], [], arb(0)
+        within = arb(reached).exp()
         for hole in self._side.holes:
             if hole.low > reached:
                 continue
             ring = self._rings.get(hole)
             if ring is None:
-                ring = self._bounding.ring(hole, poles, self._integrations)
-            if ring is None or not ring[0].reach < arb(reached).exp():
+                ring = self._bounding.ring(hole, [p.enclosure() for p in poles], within, self._integrations)
+            if ring is None or not ring[0].reach < within:
                 return None
             self._rings[hole] = ring
             rings.append(ring[0])
@@ -237,10 +247,10 @@ class BoundedModes:
             return None
         return reached, [*begun, *added[:-1]]
 
-    def _may_be_pole(self, root: Root, radius: arb) -> bool:
-        """Tell whether a root of the denominator, in the upper half-plane, may be a pole within a radius."""
-        is_outside = root.is_zero or root.im < 0 or root.natural_frequency() > radius
-        return not is_outside and self._bounding.may_be_pole(root) and not self._is_removable(root)
+    def _poles(self, roots: Sequence[Root], radius: arb) -> list[Root]:
+        """Return the roots of the denominator, in the upper half-plane, that may be poles within a radius."""
+        within = (r for r in roots if not (r.is_zero or r.im < 0 or r.natural_frequency() > radius))
+        return [r for r in within if self._bounding.may_be_pole(r) and not self._is_removable(r)]
 
     def _is_removable(self, root: Root) -> bool:
         """Tell whether numerator and denominator share a root where wavenumbers vanish or meet."""
@@ -277,16 +287,17 @@ def _needed(few: tuple[int, float], many: tuple[int, float], goal: float, most: 
     """Return about how many modes bring a bound below a goal, from two counts and their bounds.
 
     >>> _needed((10, 8.0), (20, 1.0), 1 / 8)  # it falls with the third power
-    48
+    46
     """
     if many[1] <= goal:
         return many[0]
-    power = log(few[1] / many[1]) / log(many[0] / few[0])
+    # Far out bounds fall less than between few modes.
+    power = 0.95 * log(few[1] / many[1]) / log(many[0] / few[0])
     if not (goal > 0 and power > 0):
         return most
     # Logarithms, as a power of a small number may overflow.
     growth = log(many[1] / goal) / power
-    return min(most, round(1.2 * many[0] * 2 ** min(growth / log(2), 20)))
+    return min(most, round(1.1 * many[0] * 2 ** min(growth / log(2), 20)))
 
 
 def proved_at_origin(bound: AnyBoundFunction, integrations: int) -> list[ExponentialTerm] | None:

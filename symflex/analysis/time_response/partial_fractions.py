@@ -62,29 +62,26 @@ def values_of(
     [0.0, 0.735759]
     """
     count = len(times) - start
-    outer, inner = times.spread(start, delay)
-    left: list[list[arb]] = [[] for _ in outer]
+    if not count:
+        return []
+    spread = times.spread(start, delay)
+    left: list[list[arb]] = []
     right: list[list[arb]] = []
     for term in terms:
         # What P(a + b) exp(rate (a + b)) is, sorted by powers of b: products of a's factor and b's.
+        outer, inner = spread.exponentials(term.rate)
         polynomial = acb_poly([c / factorial(j) for j, c in enumerate(term.coefficients)])
-        powers = len(term.coefficients) if len(inner) > 1 else 1
-        for row, a in zip(left, outer, strict=True):
-            grown = (term.rate * a).exp()
-            if powers == 1:
-                factors = [(polynomial(a) if len(term.coefficients) > 1 else term.coefficients[0]) * grown]
-            else:
-                moved = polynomial(acb_poly([a, acb(1)]))
-                factors = [moved[i] * grown for i in range(powers)]
-            row += [part for w in factors for part in (w.real, -w.imag)]
-        column = [(term.rate * b).exp() for b in inner]
-        for i in range(powers):
+        moved = [polynomial(acb_poly([a, acb(1)])) for a in spread.outer] if polynomial.degree() > 0 else None
+        for i in range(len(term.coefficients) if len(inner) > 1 else 1):
+            factors = [p[i] for p in moved] if moved else [polynomial[i]] * len(outer)
+            column = [c * w for c, w in zip(factors, outer, strict=True)]
+            left += [[w.real for w in column], [-w.imag for w in column]]
             if i:
-                column = [b * w for b, w in zip(inner, column, strict=True)]
-            right += [[w.real for w in column], [w.imag for w in column]]
-    if not right or not count:
+                inner = [b * w for b, w in zip(spread.inner, inner, strict=True)]
+            right += [[w.real for w in inner], [w.imag for w in inner]]
+    if not right:
         return [arb(0)] * count
-    values: list[arb] = (arb_mat(left) * arb_mat(right)).entries()
+    values: list[arb] = (arb_mat(left).transpose() * arb_mat(right)).entries()
     return values[:count]
 
 

@@ -35,6 +35,36 @@ PERIODS, UNDAMPED_PERIODS = 12, 4  # of the slowest oscillation that are shown: 
 
 
 @dataclass(frozen=True, eq=False)
+class Spread:
+    """Two lists whose sums, a by a, are times [s]."""
+
+    outer: list[arb]
+    inner: list[arb]
+    step: arb | None = None  # between two times that follow each other, where all are evenly spaced
+
+    def exponentials(self, rate: acb) -> tuple[list[acb], list[acb]]:
+        """Return ``exp(rate*t)`` at all times of both lists: of even ones two, and powers of these.
+
+        >>> outer, inner = SampleTimes.evenly(Fraction(3), 4).spread().exponentials(acb(1))
+        >>> [round(float((a * b).real.log()), 9) for a in outer for b in inner]
+        [0.0, 1.0, 2.0, 3.0]
+        """
+        if self.step is None:
+            return [(rate * a).exp() for a in self.outer], [acb(1)]
+        inner = _powers((rate * self.step).exp(), len(self.inner) + 1)
+        rows, first = _powers(inner.pop(), len(self.outer)), (rate * self.outer[0]).exp()
+        return [first * power for power in rows], inner
+
+
+def _powers(base: acb, count: int) -> list[acb]:
+    """Return so many powers from 0 on, each of two before it: a chain of products would widen their balls."""
+    powers = [acb(1), base]
+    for n in range(len(powers), count):
+        powers.append(powers[n // 2] * powers[n - n // 2])
+    return powers[:count]
+
+
+@dataclass(frozen=True, eq=False)
 class SampleTimes:
     """Increasing times from 0 on [s]."""
 
@@ -123,22 +153,24 @@ class SampleTimes:
         off = arb(float(remaining[0])) - arb(float(self.seconds[0])) - ball(self.step) * start
         return start, SampleTimes(remaining, self.step, 0.0, moment + off)
 
-    def spread(self, start: int = 0, delay: arb | None = None) -> tuple[list[arb], list[arb]]:
-        """Return two lists whose sums, a by a, are all times from number ``start`` on, less ``delay``."""
+    def spread(self, start: int = 0, delay: arb | None = None) -> Spread:
+        """Return all times from number ``start`` on, less ``delay``, as sums of two lists."""
         off = (arb(0) if delay is None else delay) + (self.origin or 0)
         if self.step is None or not len(self):
-            return [arb(t) - off for t in self.seconds[start:].tolist()], [arb(0)]
+            return Spread([arb(t) - off for t in self.seconds[start:].tolist()], [arb(0)])
         count = len(self) - start
         width = isqrt(max(count - 1, 0)) + 1
         step = ball(self.step)
         first = arb(float(self.seconds[0]), self.slack) + step * start - off
         rows = -(-count // width)
-        return [first + step * (width * i) for i in range(rows)], [step * i for i in range(width)]
+        return Spread(
+            [first + step * (width * i) for i in range(rows)], [step * i for i in range(width)], step
+        )
 
     def enclosed(self, start: int = 0, delay: arb | None = None) -> list[arb]:
         """Return every time from number ``start`` on, less a delay, as a ball at the current precision."""
-        outer, inner = self.spread(start, delay)
-        return [a + b for a in outer for b in inner][: len(self) - start]
+        spread = self.spread(start, delay)
+        return [a + b for a in spread.outer for b in spread.inner][: len(self) - start]
 
 
 def evenly(until: Fraction, points: int) -> tuple[Fraction, ...]:
