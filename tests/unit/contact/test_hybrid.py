@@ -68,6 +68,14 @@ def test_a_filtered_controller_agrees_with_a_grid():
     assert float(filtered.needed) == pytest.approx(expected, rel=1e-7)
 
 
+@pytest.mark.parametrize(("sign", "needed_for_damping"), [("+", 0.3 / 5), ("-", 0.3)])
+def test_a_filter_of_the_velocity_leaves_both_ends_of_the_cosine_to_decide(sign, needed_for_damping):
+    # Brown and Colgate (1995), appendix A: a backward difference behind a low pass tau of the same mapping,
+    # B (z - 1)/((T + tau) z - tau). At z = -1 that needs K T/2 + B T/(T + 2 tau), at z = 1 K T/2 - B.
+    filtered = found(wall=f"K {sign} B*(z - 1)/(T*(3*z - 2))")  # tau = 2 T
+    assert float(filtered.needed.mid()) == pytest.approx(0.5 + needed_for_damping, rel=1e-12)
+
+
 @pytest.mark.parametrize("wall", ["-K", "K/(z - 2)", "-K/(z - 1)", "K*(z - 1.2)/(z + 1.5)"])
 def test_a_machine_that_is_unstable_alone_is_active(wall):
     unstable = found(wall=wall)

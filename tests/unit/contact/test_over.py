@@ -95,6 +95,11 @@ x = "(P + I/s)*(K_s - K_v)*y/(s + (P + I/s)*K_s)"
 link   = { type = "mass", at = "y", m = "m" }
 spring = { type = "force_source", at = "y", f = "-K_s*(y - x)" }
 """
+DAMPED_ELASTIC = (
+    ELASTIC.replace("-K_s*(y - x)", "-(K_s + c*s)*(y - x)")
+    .replace("(K_s - K_v)*y/(s + (P + I/s)*K_s)", "(K_s + c*s - K_v)*y/(s + (P + I/s)*(K_s + c*s))")
+    .replace("m = 1 }", "m = 1, c = 5 }")
+)
 
 
 def test_force_feedback_hides_no_more_than_the_mass_of_the_motor():
@@ -111,3 +116,10 @@ def test_a_series_elastic_actuator_shows_no_more_than_its_spring():
     values = passive_over(machine(ELASTIC), PassivityOptions(("y",), ("K_v",), (0, 400)))
     assert values.certified
     assert ends(values) == [(0.0, pytest.approx(150, rel=1e-12))]
+
+
+def test_a_damper_beside_the_spring_leaves_less_of_it_to_an_integrator():
+    # By hand Re(f/(s y)) has the sign of (P c + 1) c omega^2 + P K_s^2 - K_v (P K_s + I c).
+    values = passive_over(machine(DAMPED_ELASTIC), PassivityOptions(("y",), ("K_v",), (0, 400)))
+    assert values.certified
+    assert ends(values) == [(0.0, pytest.approx(3 * 150**2 / (3 * 150 + 0.4 * 5), rel=1e-12))]

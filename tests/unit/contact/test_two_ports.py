@@ -180,3 +180,31 @@ def test_a_lagged_motor_at_the_end_of_a_rod_is_passive_with_enough_friction_ther
 
     assert (of(rod(1)).passive, of(rod(1)).absolutely_stable) == (True, True)
     assert of(rod(0.99)).passive is None
+
+
+def test_the_margin_of_an_amplifier_is_the_stability_factor_of_its_scattering_parameters() -> None:
+    # Rollett (1962): K = (1 - |S11|^2 - |S22|^2 + |det S|^2)/(2 |S12 S21|) of any reference resistance.
+    elements = {
+        "r_b": {"type": "resistor", "between": ["b", "ground"], "R": "300 Ohm"},
+        "c_b": {"type": "capacitor", "between": ["b", "ground"], "C": "12 pF"},
+        "c_m": {"type": "capacitor", "between": ["b", "c"], "C": "2 pF"},
+        "g_m": {
+            "type": "vccs",
+            "inputs": ["b", "ground"],
+            "terminals": ["ground", "c"],
+            "g": "40 mA/V",
+        },
+        "r_c": {"type": "resistor", "between": ["c", "ground"], "R": "90 Ohm"},
+    }
+    found = of(Model(elements=elements, inputs={"i": {"current": "b"}}, outputs={"v": "c"}), "b", "c")
+    omega = np.geomspace(1e5, 1e12, 400_001)
+    s, one = 1j * omega, np.eye(2)
+    y = np.array([[1 / 300 + 14e-12 * s, -2e-12 * s], [0.04 - 2e-12 * s, 1 / 90 + 2e-12 * s]])
+    y = np.moveaxis(50 * y, 2, 0)
+    S = (one - y) @ np.linalg.inv(one + y)
+    size = abs(S) ** 2
+    factor = 1 - size[:, 0, 0] - size[:, 1, 1] + abs(np.linalg.det(S)) ** 2
+    factor /= 2 * np.sqrt(size[:, 0, 1] * size[:, 1, 0])
+    assert (found.absolutely_stable, found.least is None) == (factor.min() >= 1, False)
+    assert found.least is not None
+    assert float(found.least.value.mid()) == pytest.approx(factor.min(), rel=1e-6)
