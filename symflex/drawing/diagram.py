@@ -372,7 +372,8 @@ class _Band:
         fraction = formula(self.graph.blocks[one.name]) if one.kind == "block" else None
         shown = text(self.graph.labels.fraction(fraction), SIZE) if fraction is not None else None
         if shown and shown.width <= WIDEST:
-            return _boxed(one, shown, _fitting(one.label, SMALL))
+            is_named = one.name not in self.graph.labels.written_delays
+            return _boxed(one, shown, _fitting(one.label, SMALL) if is_named else None)
         return _boxed(one, _fitting(one.label, SIZE) or text(r"\cdots", SIZE), None)
 
     def _tag(self, one: SignalNode, *, is_tag: bool) -> Built:
@@ -437,7 +438,7 @@ def _boxed(one: SignalNode, shown: Lettering | None, name: Lettering | None) -> 
 
 def statements(graph: SignalGraph) -> list[Placed]:
     """Return equations, and the formulas of blocks that stand in no diagram, one below the other."""
-    drawn = {n.name for n in graph.nodes if n.kind == "block"}
+    drawn = {n.name for n in graph.nodes if n.kind == "block"} | {*graph.labels.written_delays}
     y, lines_drawn = 0.0, []
     for equation in graph.equations:
         sides = " = ".join(graph.labels.expression(side) for side in equation.children)

@@ -14,7 +14,17 @@ from matplotlib.mathtext import MathTextParser
 
 from symflex.drawing.geometry import Lettering
 from symflex.errors import Text
-from symflex.expressions import Attribute, Call, Differentiated, Expression, Name, replace_values, substitute
+from symflex.expressions import (
+    Attribute,
+    Call,
+    Differentiated,
+    Expression,
+    Name,
+    negative,
+    product_of,
+    replace_values,
+    substitute,
+)
 from symflex.expressions import nodes as parts_of
 from symflex.figures.style import PRIMES, label_of_name, label_of_unit, power_of_ten
 from symflex.model import ExactValue, Model, ModelParameter
@@ -107,6 +117,13 @@ class Labels:
         # A made label that is not a mere letter with subscripts is long, and cut here.
         return {n: made[n] if n in declared or len(n) <= LONGEST_NAME else name_latex(n) for n in made}
 
+    @cached_property
+    def written_delays(self) -> Mapping[str, Expression]:
+        """What an expression writes as ``exp(-s*T)``, by the name of the block that was made of it."""
+        made = [b for b in self.model.blocks if b.name.startswith("delay_") and b.span is not None]
+        times = {b.name: dict(b.values)["T"] for b in made if b.span and b.span.text.startswith("exp(")}
+        return {name: Call("exp", negative(product_of([Name("s"), time]))) for name, time in times.items()}
+
     def end(self, name: str, latex: str) -> str:
         """Return the label of an input or output."""
         label = read_label(latex.strip()) if latex.strip() else None
@@ -134,6 +151,7 @@ class Labels:
     def expression(self, expression: Expression, style: Style = Style.INLINE) -> str:
         """Return an expression in mathematics, by default quotients with a slash."""
         # A bracket with primes is a name to the writer, and put in afterwards.
+        expression = substitute(expression, self.written_delays)
         brackets = [n for n in parts_of(expression) if isinstance(n, Differentiated)]
         stands_for = {rf"\mathcal{{B}}_{{{i}}}": self._bracket(n) for i, n in enumerate(brackets)}
         plain = replace_values(expression, dict(zip(brackets, map(Name, stands_for), strict=True)))

@@ -8,6 +8,9 @@ import pytest
 import symflex
 from symflex import pipeline
 from symflex.drawing import drawing_of, render_drawing
+from symflex.drawing.diagram import statements
+from symflex.drawing.lettering import Labels
+from symflex.drawing.signals import SignalGraph
 from symflex.drawing.symbols import SYMBOLS
 from symflex.library.elements import ELEMENTS
 from tests.house.repository import ROOT
@@ -251,3 +254,17 @@ def test_what_is_read_twice_has_one_wire_that_branches():
             min(a[0], b[0]) <= x <= max(a[0], b[0]) and min(a[1], b[1]) <= y <= max(a[1], b[1])
             for a, b in sides
         )
+
+
+def test_a_delay_written_in_a_signal_is_drawn_as_it_is_written():
+    model = pipeline.loads("""symflex = 1
+parameters = { T = {}, T_1 = {} }
+signals.y = "exp(-s*T)/(T_1*s + 1)*(r - y)"
+inputs.r = {}
+outputs.Y = "y"
+""")
+    (signal,) = model.signals
+    shown = Labels(model).expression(signal.expression)
+    assert r"\mathrm{e}^{-s T}" in shown
+    assert "delay" not in shown
+    assert not statements(SignalGraph(model, Labels(model), ["r"]))  # nor is it explained below the drawing
