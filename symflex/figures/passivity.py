@@ -11,6 +11,7 @@ import numpy.typing as npt
 from matplotlib.figure import Figure
 
 from symflex.analysis.response import default_band, grid_about
+from symflex.contact.lossless import without_ladder
 from symflex.contact.real_part import real_part
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.figures.axes import Canvas, root_figure, set_frequency_axis, write_title
@@ -35,7 +36,7 @@ def draw_passivity(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure
     axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * (len(lines) + 1))
     bands = [
         (float(b.low.mid()) / (2 * np.pi), None if b.high is None else float(b.high.mid()) / (2 * np.pi))
-        for b in real_part(bound, DIGITS).active
+        for b in real_part(without_ladder(bound), DIGITS).active
     ]
     low, high = canvas.band_of(bound.source.model) or _with_bands(default_band(locate(bound)), bands)
 

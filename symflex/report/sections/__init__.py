@@ -7,7 +7,7 @@ computed; the report gives the reason in its place.
 from collections.abc import Callable
 
 from symflex.report.document import ChapterPart
-from symflex.report.sections import files, formulas, roots, symbolic
+from symflex.report.sections import contact, files, formulas, roots, symbolic
 from symflex.report.study import Study
 
 SECTIONS: dict[str, Callable[[Study], ChapterPart | None]] = {  # sections in the order of the page
@@ -21,6 +21,7 @@ SECTIONS: dict[str, Callable[[Study], ChapterPart | None]] = {  # sections in th
     "roots": roots.root_section,
     "letters": symbolic.symbolic_section,
     "loops": roots.loop_section,
+    "contact": contact.contact_section,
     "files": files.export_section,
     "specification": formulas.specification_section,
 }

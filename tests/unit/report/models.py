@@ -45,6 +45,8 @@ title = "<script>alert(3)</script> $\\frac{ \\input{x}"
 of = ["X/F"]
 [figures.later]
 kind = "nyquist"
+[ports]
+hand = { at = "x", doc = "<script>alert(4)</script> \\input{x}" }
 """
 
 SYMBOLIC = """
