@@ -71,6 +71,7 @@ MOST_LINES, FEWEST_OF_EACH = 1000, 300  # lines on which numbers of poles are co
 DROWNED = 0.5  # deviation of each part over the magnitude from which a line shows noise
 DROWNED_DB = 6.0  # misfit of a fit without poles from which noise is as large as the response
 OVERDAMPED = 2.0  # damping ratio of a pair of zeros that had better be called two real ones
+FAINT = 0.0116  # share of a response: 0.1 dB, which data sheets of analysers give as accuracy
 LEAST_DAMPING = 0.05  # damping ratios of zeros below this are not held against their own error
 DEFAULTS = FitOptions()
 SMOOTH = 3.0  # a Hann window makes this 2, see :attr:`symflex.data.fitting.least_squares.Refined.correlation`
@@ -580,6 +581,28 @@ def said_of_units(fit: ResonanceFit, what: str = "base") -> list[str]:
     return list(dict.fromkeys(said))
 
 
+def _said_of_faint(fit: ResonanceFit) -> list[str]:
+    """Return which resonances an instrument's error, or one line of hum, looks like."""
+    modes, said = fit.resonances, []
+    for i in np.flatnonzero(fit.modes).tolist():
+        where = f"{named_pair(fit, i)} at {modes.omega_p[i] / (2 * np.pi):.4g} Hz"
+        heights, is_narrow = [], True
+        for r, line in enumerate(fit.problem.lines):
+            omega = line.omega_seen
+            near = np.abs(omega - modes.omega_p[i])
+            heights.append(float(np.max(np.abs(modes.share(r, i, omega)))))
+            first = int(np.argmin(near))
+            beside = np.delete(near, first)
+            width = 2 * modes.zeta_p[i] * modes.omega_p[i]
+            is_narrow &= line.measured.spacing_hz is None and width < near[first] + np.min(beside)
+        if max(heights) < FAINT:
+            most = f"{20 * np.log10(1 + max(heights)):.2g} dB"
+            said.append(f"{where} changes the response by {most} at most, as an instrument's error may")
+        if is_narrow:
+            said.append(f"{where} is narrower than the distance of lines: one wrong line looks the same")
+    return said
+
+
 def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
     modes = fit.resonances
     errors = fit.standard_errors()
@@ -616,6 +639,7 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
                 )
     if fit.record is not None:
         return tuple(warnings)
+    warnings += [] if is_exact else _said_of_faint(fit)
     for line in fit.problem.lines:
         spacing = line.measured.spacing_hz
         if spacing is None or line.measured.window:

@@ -18,7 +18,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from scipy.linalg import hankel, lstsq, qr
@@ -86,6 +86,11 @@ class _State:
     def of(problem: OutputError, dynamics: PoleSet) -> _State:
         costs = tuple(one.cost for one in problem.solve(dynamics))
         return _State(problem.score(dynamics, costs), problem, dynamics, costs)
+
+    @property
+    def least(self) -> float:
+        """The score, if what explains the outputs cost nothing."""
+        return replace(self.problem, modes=None).score(PoleSet.nothing(), self.costs)
 
     def refined(self, steps: int, tolerance: float) -> _State:
         spend()
@@ -320,7 +325,8 @@ class RecordSearch:
         ):
             for changed in change(state):
                 other = changed.refined(*ROUGH)
-                if change in (self._with_hold, self._with_delay):  # poles may make up for a wrong one
+                # Poles may make up for a wrong one, and fewer of them never leave less of the output.
+                if change in (self._with_hold, self._with_delay) and other.least < state.score:
                     other = self._shrunk(other)
                 if other.score < state.score - GAIN:
                     state = other
@@ -480,11 +486,12 @@ def _reduced(state: _State) -> Iterator[_State]:
             yield replace(
                 state, dynamics=replace(fewer, real=np.append(fewer.real, np.maximum(apart, 0.05 * w)))
             )
-    for name in ("real", "lines"):
-        values = getattr(dynamics, name)
-        for i in range(values.size):
-            kept: dict[str, Any] = {name: np.delete(values, i)}
-            yield replace(state, dynamics=replace(dynamics, **kept))
+    for i in range(dynamics.real.size):
+        yield replace(state, dynamics=replace(dynamics, real=np.delete(dynamics.real, i)))
+    # Nothing else makes up for a sine: the likeliest to go is known before anything moves.
+    fewer_lines = [replace(dynamics, lines=np.delete(dynamics.lines, i)) for i in range(dynamics.lines.size)]
+    without = [_State.of(state.problem, one) for one in fewer_lines]
+    yield from sorted(without, key=lambda one: one.score)[:1]
     if dynamics.real.size > 1:
         order = np.argsort(dynamics.real)
         for a, b in pairwise(order):

@@ -189,6 +189,22 @@ class Resonances:
             value = value / (1 + s / corner)
         return np.asarray(value * (1 + s / self.real_z[response]), np.complex128)
 
+    def share(self, response: int, i: int, omega: Values) -> Complex:
+        """Return what the partial fraction of a pair of poles has of a response at ``1j*omega``.
+
+        >>> round(float(abs(Resonances.of([(2.0, 0.01, np.inf, 0.0)]).share(0, 0, np.array([2.0]))[0])), 2)
+        1.0
+        """
+        size, zeta = self.omega_p[i], self.zeta_p[i]
+        pole = size * (-zeta + 1j * np.sqrt(1 - zeta**2))
+        omega_p = self.omega_p.copy()
+        omega_p[i] = np.inf
+        rest = replace(self, omega_p=omega_p).factor(response, np.array([pole / 1j]))[0]
+        residue = rest * size**2 / (2j * pole.imag)
+        s = 1j * omega
+        both = residue / (s - pole) + np.conj(residue) / (s - np.conj(pole))
+        return np.asarray(both / self.factor(response, omega), np.complex128)
+
     def shared(self) -> int:
         """Return how many parameters all responses share; they stand first in the packed vector."""
         return 2 * self.count + self.real_p.size

@@ -26,9 +26,11 @@ from symflex.data.measurement.column_names import (
     LETTERS,
     MEANINGS,
     PARTS,
+    REFERENCE,
     SCALES,
     SPELLINGS,
     UNIT_ENDS,
+    UNITS,
     UNITS_IN_WORDS,
     WORDS,
 )
@@ -93,6 +95,7 @@ def meaning_of(name: str, unit_below: str = "") -> ColumnMeaning:
     if factor and "times.-1" in marks and kind not in ("frequency", "omega", "magnitude", "power"):
         factor = -factor
     kind = "frequency" if kind == "omega" else kind
+    unit = over[1].strip() if (over := REFERENCE.search(name)) and over[1].strip() else unit
     return ColumnMeaning(kind, factor, scale, _label(text, word), unit, word)
 
 
@@ -188,6 +191,22 @@ def _beside_phase(read: list[ColumnMeaning]) -> list[ColumnMeaning]:
     are_sizes = [not m.kind and m.label in turned and "/" in m.unit + m.label for m in read]
     sized = [meaning_of(f"magnitude {m.label}", m.unit) for m in read]
     return [size if is_size else m for size, is_size, m in zip(sized, are_sizes, read, strict=True)]
+
+
+def in_unit_of(asked: ColumnMeaning, header: ColumnMeaning) -> ColumnMeaning:
+    """Return what ``--columns`` says of a column, in the unit of its header if it gives none itself.
+
+    >>> in_unit_of(ColumnMeaning("frequency", word="f"), meaning_of("speed [rpm]")).factor * 60
+    1.0
+    """
+    if header.kind == asked.kind == "frequency" and asked.word == "f" and not asked.unit:
+        return header
+    if asked.unit or asked.kind in ("", "phase", "coherence") or KINDS.get(asked.word) == "omega":
+        return asked
+    if asked.kind == "frequency":
+        factor = _factor("frequency", header.unit, asked.word)
+        return replace(asked, unit=header.unit if factor else "", factor=factor or asked.factor)
+    return replace(asked, unit="" if _small(header.unit) in UNITS else header.unit)
 
 
 def counts(numbers: npt.NDArray[Any]) -> bool:

@@ -56,7 +56,9 @@ _TIMES: Final = {
 SECONDS: Final = {word: factor for factor, words in _TIMES.items() for word in words.split()}
 """Words for units of time, and what they are in seconds."""
 FACTORS: Final = {
-    "frequency": FREQUENCY_UNITS | {"rad": FREQUENCY_UNITS["rad/s"]},
+    "frequency": FREQUENCY_UNITS
+    | {"rad": FREQUENCY_UNITS["rad/s"]}
+    | dict.fromkeys(("rpm", "1/min", "u/min", "min^-1"), 1 / 60),
     "omega": FREQUENCY_UNITS | dict.fromkeys(("rad", "1/s", "s^-1", ""), FREQUENCY_UNITS["rad/s"]),
     "phase": PHASE_UNITS,
 }
@@ -65,6 +67,8 @@ IN_OR_OUT = re.compile(r"(?:v|u|i|signal|voltage|ch\w?)?[ _.(]*(in|out)(?:put)?\
 """Labels of what goes in and what comes out: Vin, V(out), u_in, Output."""
 AT_ENDS = re.compile(r"(?:[vu]|ch|channel|kanal)[ _]?(?:([1ei])|([2ao]))", re.I)
 """Amplitudes at both ends of a two-port: V1 and V2, Ue and Ua, Vi and Vo, CH1 and CH2."""
+REFERENCE = re.compile(r"\bdb\s+(?:re|ref|rel)\b[.:]?\s*(?:1(?:\.0*)?(?!\d)\s*)?([^)\]]*)", re.I)
+"""Decibels over a unit: dB re 1 m/N."""
 OTHER_SIZE = re.compile(r"squared|(?:\||mag\w*)\s*(?:\^2|²)|^ln\b|[([]\s*(?:np|nepers?)\s*[])]", re.I)
 """Names of squares and natural logarithms of magnitudes, which are no magnitudes."""
 
@@ -102,7 +106,7 @@ _LOG: Final = r"0\s*\*?\s*log(?:_?10)?\s*(?:db\b)?"
 _EDGE: Final = r"[\s:;,.\-_'|()\[\]]*"
 SPELLINGS: Final = (
     NameRow(r"\g<0>", OTHER_SIZE.pattern, "|H1|^2 (V)", "nothing of H1^2 in V", "scripts", mark="other.size"),
-    NameRow("dB", r"\bdb\s+re\b[^)\]]*", "H1 (dB re 1 V)", "magnitude of H1 in dB, decibel", "acoustics"),
+    NameRow("dB", REFERENCE.pattern, "H1 (dB re 1 V)", "magnitude of H1 in V, decibel", "acoustics"),
     NameRow("phase ", "\u2220", "\u2220H1 (rad)", "phase of H1 in rad", "reports"),
     NameRow("°", "Â°", "Phase (Â°)", "phase in ° times 0.01745", "UTF-8 that was read as Latin-1"),
     NameRow("inphase", r"(?<![^\W\d_])in[-_]phase(?![^\W\d_])", "In-Phase (V)", "real in V", "lock-ins"),

@@ -27,6 +27,7 @@ from symflex.data.measurement.column_names import (
     KINDS,
     OHMS,
     PHASE_UNITS,
+    UNITS,
 )
 from symflex.data.measurement.likely_readings import MOST_LISTED, UNDECIDED, ask
 from symflex.data.measurement.measured_response import (
@@ -109,7 +110,11 @@ def assembled(
             group = _without_zeros(of_label, guesses)
             values = _values(group, lines, guesses, columns)
             coherence = group.get("coherence")
-            unit = ratio_unit(next(iter(group.values())).meaning.unit, file)
+            value = next(iter(group.values()))
+            unit = ratio_unit(value.meaning.unit, file)
+            if not unit and not _is_plain(value.meaning):
+                written = f"the unit '{value.meaning.unit[:20]}' of '{value.name[:30]}'"
+                guesses.append(f"{written} is not taken: values are as written")
             shares = None if coherence is None else _shares(coherence, guesses)
             kept = (frequency, *group.values())
             used |= {id(c) for c in kept} if np.any(values) else set()
@@ -596,6 +601,12 @@ def ratio_unit(text: str, file: str) -> str:
         return unit_of(small, file)
     except DataError:
         return ""
+
+
+def _is_plain(meaning: ColumnMeaning) -> bool:
+    """Return whether a unit is none, or one that changes no values."""
+    is_scale = meaning.unit.lower().strip("-") in ("", "%", "lin", "abs", *UNITS)
+    return is_scale or meaning.scale == "decibel" or (in_si(meaning.unit) or (0.0, ""))[0] == 1
 
 
 def _wrong(column: DataColumn, lines: Real) -> list[Diagnostic]:

@@ -21,6 +21,7 @@ from symflex.data.measurement.column_meaning import (
     DataColumn,
     columns_asked,
     counts,
+    in_unit_of,
     meaning_of,
     meanings_of,
 )
@@ -67,7 +68,7 @@ NEAR: Final = 60  # lines above the numbers among which the names of columns are
 def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[MeasuredResponse, ...]:
     """Read responses from text in columns; a single one is called ``stem`` when the file gives no name."""
     table = TextTable.of(name, data)
-    turned = _turned(table) or _qucs(table) or _stepped(table) or _citi(table)
+    turned = _turned(table) or _qucs(table) or lines_with_axis(table) or _citi(table)
     if turned is not None:
         text, origin, said = turned
         try:
@@ -122,8 +123,8 @@ def _qucs(table: TextTable) -> _Rewritten | None:
     return "".join("\t".join(row) + "\n" for row in zip(*columns, strict=True)).encode(), lambda _: None, ()
 
 
-def _stepped(table: TextTable) -> _Rewritten | None:
-    """Return a LabVIEW file with a column of its frequencies, where its header gives the first and a step."""
+def lines_with_axis(table: TextTable) -> _Rewritten | None:
+    """Return a LabVIEW file with a column of its times or frequencies, if its header gives their step."""
     head, names, rows = table.source.text.partition("\nX_Value\t")
     fields = {key: more.partition("\t")[0] for key, _, more in (x.partition("\t") for x in head.split("\n"))}
     start, step = (number(fields.get(key, ""), table.decimal) for key in ("X0", "Delta_X"))
@@ -225,9 +226,9 @@ def _responses(
             places = {tuple(bool(w.strip("- ")) for w in words.split(",")) for words in (asked, better[1])}
             if len(places) == 1 or not header:
                 guesses.append(f"names and numbers look more like --columns {better[1]}")
-        for i, (c, m) in enumerate(zip(columns, meanings, strict=True)):
-            is_kept = c.meaning.kind == m.kind == "frequency" and m.word == "f" and not m.unit
-            columns[i] = c if is_kept else replace(c, meaning=m)  # a plain f has the unit of the header
+        columns = [
+            replace(c, meaning=in_unit_of(m, c.meaning)) for c, m in zip(columns, meanings, strict=True)
+        ]
         return assembled(columns, name, header, is_asked=True)
     implied = _IMPLIED.get(Path(name).suffix.lower())
     if implied and header is None and len(columns) == 3:  # noqa: PLR2004

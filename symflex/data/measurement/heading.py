@@ -14,6 +14,7 @@ from symflex.data.measurement.text_table import COMMENTS, SIGNS, TextTable, bare
 
 _IN_BRACKETS = re.compile(r"\s*[\[(]([^\[\](){}]*(?:\([^()]*\)[^\[\]()]*)?)[\])]\s*$")
 _NODE = re.compile(r"([VI])\w?\(([^()]+)\)", re.I)  # of SPICE: V(out), I(R1), Id(M1)
+_LABELS = "Y_Unit_Label\t"  # of LabVIEW, above the names
 _BEHIND = re.compile(r"(?<=\w)(?:\s+in\s+|,\s*)(\S+)$")
 _SUFFIX = re.compile(
     r"(?<=\w)_(mm|um|nm|mV|uV|kV|mA|kN|mN|Nm|deg|rpm|rad|kPa|bar|N|V|mm_s|m_s2?|rad_s|deg_s)$"
@@ -28,7 +29,10 @@ def units_below(table: TextTable, first: int, names: Sequence[str]) -> list[str]
     cells = [cell.strip("[]()<> ") for cell in cut(text, table.delimiter)]
     are_units = [cell.lower() in SECONDS or in_si(cell) is not None for cell in cells]
     is_row = 1 < len(cells) <= len(names) and cells != [name.strip("[]()<> ") for name in names]
-    return cells if is_row and 2 * sum(are_units) > len(cells) else []
+    if is_row and 2 * sum(are_units) > len(cells):
+        return cells
+    labels = next((line for line in table.lines[:first] if line.startswith(_LABELS)), "")
+    return ["", *cut(labels, table.delimiter)[1:]] if labels else []
 
 
 def with_unit(cell: str, style: str) -> tuple[str, str]:

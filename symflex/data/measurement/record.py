@@ -34,6 +34,7 @@ from symflex.data.measurement.arrays import (
 )
 from symflex.data.measurement.column_meaning import meaning_of
 from symflex.data.measurement.column_names import SECONDS
+from symflex.data.measurement.comma_separated import lines_with_axis
 from symflex.data.measurement.heading import units_below, with_unit
 from symflex.data.measurement.input_signal import (
     ARRAYS,
@@ -175,6 +176,8 @@ def read_record(name: str, data: bytes, stem: str, asked: str = "") -> TimeRecor
         return _asked_arrays(arrays, words, interval, name, stem) if asked else _of_arrays(arrays, name, stem)
     if not asked and not _may_be_record(data):
         return None
+    if (stepped := lines_with_axis(TextTable.of(name, data))) is not None:
+        data = stepped[0]
     table = TextTable.of(name, timed := _without_clock(data))
     used = [i for i, word in enumerate(words) if word not in ("-", "")]
     head = range(min(SEARCHED, len(table.lines)))
@@ -479,13 +482,14 @@ def _numbers(
         texts = [text.replace(",", ".") for text in texts]
     try:
         values = np.loadtxt(texts, delimiter=delimiter, ndmin=2, usecols=range(width), comments=None)
-        return list(values.T), lines
+        if np.isfinite(values).all():
+            return list(values.T), lines
     except (ValueError, IndexError):
         pass  # some cell is no plain number
     rows = [cut(table.lines[i], table.delimiter) for i in lines]
     read = [[number(c, table.decimal) for c in row[:width]] + [None] * (width - len(row)) for row in rows]
     read = [[x.real if isinstance(x, complex) and not x.imag else x for x in row] for row in read]
-    empty = np.array([[not isinstance(x, float) for x in row] for row in read])
+    empty = np.array([[not (isinstance(x, float) and np.isfinite(x)) for x in row] for row in read])
     sparse = np.flatnonzero(2 * empty.sum(axis=0) > len(empty) * ~np.isin(range(width), [*unused])).tolist()
     wrong = np.asarray(np.delete(empty, sparse, axis=1).any(axis=1), bool)
     if not are_few(wrong):

@@ -271,6 +271,17 @@ def test_a_resonance_narrower_than_the_distance_of_lines_is_no_wild_line():
     assert not fit.left_out(0).size
 
 
+def test_a_resonance_that_is_no_larger_than_an_instrument_errs_is_said():
+    # A divider of 0.68 with 0.05 dB more at 50 Hz, on lines that are wider apart than that peak.
+    f = np.geomspace(10, 1000, 60)
+    peak = 0.006 * 1j * f / 50 * 0.04 / (1 + 0.04j * f / 50 - (f / 50) ** 2)
+    rough = 1e-5 * np.random.default_rng(1).standard_normal((2, f.size))
+    fit = fit_resonances([MeasuredResponse("y/u", f, 0.68 * (1 + peak + rough[0] + 1j * rough[1]))])
+    assert fit.resonances.omega_p[fit.modes] / (2 * np.pi) == pytest.approx([50], rel=0.01)
+    assert any("dB at most, as an instrument's error may" in warning for warning in fit.warnings)
+    assert any("is narrower than the distance of lines" in warning for warning in fit.warnings)
+
+
 def test_exact_data_are_not_poor():
     fit = fit_resonances([exact(PAPER)])
     assert fit.resonances.omega_p / (2 * np.pi) == pytest.approx(PAPER.f_p, rel=1e-9)

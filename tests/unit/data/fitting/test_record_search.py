@@ -1,9 +1,14 @@
 """Fits of records in time, judged by what was simulated; the simulator shares no code with the fit."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import symflex
+from symflex.data.fitting.output_error import PoleSet
+from symflex.data.fitting.record_search import RecordSearch, Settings, _RecordKind, _reduced, _State
+from symflex.data.measurement.measured_response import Samples
 from symflex.errors import DataError
 from tests.unit.data.records import KINDS, closed_loop, record, response, study, written
 
@@ -161,3 +166,15 @@ def test_outputs_of_one_record_share_their_poles(tmp_path):
     fit = symflex.fit(tmp_path / "record.csv")
     assert fit.resonances.gain.size == 2 and max(deviations(fit)) < 4
     assert fit.resonances.slope.tolist() == [0, 1]
+
+
+def test_of_many_sines_only_the_one_that_is_missed_least_is_tried_to_go():
+    t = np.arange(400) * 0.01
+    y = sum(a * np.sin(2 * np.pi * f * t) for a, f in ((1.0, 7.3), (0.01, 13.1), (0.5, 21.7)))
+    y += 1e-3 * np.random.default_rng(1).standard_normal(t.size)
+    problem = RecordSearch([[Samples(0.01, y)]], Settings()).problem(_RecordKind("held"))
+    lines = 2 * np.pi * np.array([7.3, 13.1, 21.7])
+    state = _State.of(problem, replace(PoleSet.nothing(), lines=lines))
+    (fewer,) = _reduced(state)
+    assert fewer.dynamics.lines == pytest.approx(lines[[0, 2]])
+    assert state.least < state.score < fewer.score

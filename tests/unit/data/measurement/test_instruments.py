@@ -404,6 +404,20 @@ def test_values_in_the_unit_of_a_file_are_read_in_si(tmp_path):
     assert found.values == pytest.approx(H / 1e3)
 
 
+def test_units_in_headings_scale_decibels_over_one_and_columns_that_are_asked(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text("f (Hz),gain (dB re 1 mm/N),phase (deg)\n" + rows(F, DB, DEG))
+    (found,) = read_measurement(path)
+    assert found.unit == "m/N" and found.values == pytest.approx(H / 1e3, rel=1e-6)
+    path.write_text("speed [rpm],amp [um/N],phase [deg]\n" + rows(60 * F, SIZE, DEG))
+    (found,) = read_measurement(path, "f,mag,phase_deg")
+    assert found.frequency_hz == pytest.approx(F)
+    assert found.unit == "m/N" and found.values == pytest.approx(H / 1e6, rel=1e-6)
+    path.write_text("f (Hz),Real (g/N),Imaginary (g/N)\n" + rows(F, RE, IM))
+    (found,) = read_measurement(path)  # of an acceleration, or of a mass
+    assert "the unit 'g/N' of 'Real (g/N)' is not taken: values are as written" in found.guesses
+
+
 def test_sweeps_between_which_another_column_changed_are_not_averaged(tmp_path):
     (tmp_path / "a.csv").write_text(
         "R,f,S11dB,S11deg\n"

@@ -112,7 +112,7 @@ MISTAKES = {
     "a margin for a phase": ("f,db,phase margin (deg)\n1,2,3\n2,3,4\n3,4,5\n", "SF602", "a.csv:1:6"),
     "no phase": ("f,db\n1,2\n", "SF602", "a.csv:1:1"),
     "phase without unit": ("f,db,phase\n1,2,3\n", "SF602", "a.csv:1:6"),
-    "unknown unit": ("frequency [rpm],re,im\n1,2,3\n", "SF602", "a.csv:1:1"),
+    "unknown unit": ("frequency [knots],re,im\n1,2,3\n", "SF602", "a.csv:1:1"),
     "two of a kind": ("f,freq,re,im\n1,2,2,3\n2,5,2,3\n3,4,1,1\n", "SF602", "a.csv:1:3"),
     "no frequency": ("re,im\n1,2\n", "SF602", "a.csv:1:1"),
     "short line": (PLAIN.replace("2,3,4", "2,3"), "SF603", "a.csv:3:1"),

@@ -251,6 +251,27 @@ def test_units_of_columns_scale_their_values(tmp_path, head, unit, factors):
     assert (b"# unit: " in measurement_bytes(found, "a.csv")) == bool(unit)
 
 
+def test_files_of_labview_have_units_above_the_names_and_perhaps_no_times():
+    random = np.random.default_rng(1).normal(size=(64, 2))
+    head = "LabVIEW Measurement\nSeparator\tTab\nX_Columns\t{}\n***End_of_Header***\n"
+    head += "Y_Unit_Label\tNewton\tmm\nX0\t0.0\t0.0\nDelta_X\t0.001\t0.001\n***End_of_Header***\n"
+    for is_timed in (True, False):
+        rows = "".join(f"{0.001 * i if is_timed else ''}\t{a}\t{b}\n" for i, (a, b) in enumerate(random))
+        text = head.format("One" if is_timed else "No") + "X_Value\tForce\tTravel\tComment\n" + rows
+        record = read_record("a.lvm", text.encode(), "a")
+        assert record.step_s == pytest.approx(0.001) and record.unit("Travel") == "m/N"
+        assert record.input[1] == pytest.approx(random[:, 0])
+        assert record.outputs[0][1] == pytest.approx(random[:, 1] / 1e3)
+
+
+def test_samples_that_are_no_numbers_are_lost_ones():
+    rows = [f"{i},{a},{b}" for i, (a, b) in enumerate(np.random.default_rng(1).normal(size=(64, 2)))]
+    rows[20] = "20,1,NaN"
+    record = read_record("a.csv", "\n".join(["t_ms,u,y", *rows]).encode(), "a")
+    assert np.flatnonzero(record.is_missing).tolist() == [20]
+    assert record.outputs[0][1].size == 64
+
+
 def test_a_frequency_in_prose_or_among_outputs_makes_no_response_of_a_record(tmp_path):
     head = "# swept in frequency, up to 60 Hz\ntime,u,omega"
     (found,) = read_measurement(written(tmp_path, CHIRP, PUSHED, head=head))
