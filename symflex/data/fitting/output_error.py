@@ -257,6 +257,7 @@ class OutputError:
             return None
         root, at, total = np.sqrt(record.size), 0, np.sum(record.output) / np.sqrt(record.size)
         own = one.coefficients[_RecordModel(record, dynamics).driven.shape[1] :]
+        begun = begun if record.is_at_rest and not record.is_from_zero else 0.0
         has_free = record.input is None or not record.is_at_rest
         for i, p in enumerate(dynamics.poles):
             pole, is_pair = record.pole(p, dynamics.delay_s, is_mean=True), i < dynamics.omega.size
@@ -266,12 +267,11 @@ class OutputError:
             ):
                 if values is not None:
                     c = complex(*coefficients[at : at + 1 + is_pair])
-                    level = root * begun / -p if record.is_at_rest and coefficients is not own else 0
+                    level = root * begun / -p if coefficients is not own else 0
                     total -= (1 + is_pair) * (c * (values[0] + level)).real
             at += 1 + is_pair
         if dynamics.has_direct:
-            level = root * begun * record.is_at_rest
-            total -= one.coefficients[at] * (record.input_mean()[0].real + level)
+            total -= one.coefficients[at] * (record.input_mean()[0].real + root * begun)
         for k, w in enumerate(dynamics.lines):
             c = complex(*own[own.size - 2 * (dynamics.lines.size - k) :][:2])
             total -= 2 * (c * record.pole(1j * w, is_mean=True).free[0]).real

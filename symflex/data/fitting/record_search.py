@@ -115,6 +115,7 @@ class _RecordKind:
 
     hold: str
     is_at_rest: bool = False
+    is_from_zero: bool = False
     lead: int = 0  # samples of the input before the first of the output
 
 
@@ -216,6 +217,7 @@ class RecordSearch:
                     one,
                     is_joined=kind.hold == "joined",
                     is_at_rest=kind.is_at_rest,
+                    is_from_zero=kind.is_from_zero,
                     lead=kind.lead,
                     is_smooth=kind.hold == "smooth",
                 )
@@ -230,7 +232,7 @@ class RecordSearch:
 
     def with_noise_of(self, problem: OutputError) -> OutputError:
         """Return the problem of all lines, with the noise and the hold of another, from any state."""
-        return _noisy_as(self.problem(replace(_kind(problem), is_at_rest=False)), problem)
+        return _noisy_as(self.problem(replace(_kind(problem), is_at_rest=False, is_from_zero=False)), problem)
 
     def _started(self) -> _State:
         """Return the best of what the subspace method proposes."""
@@ -336,6 +338,8 @@ class RecordSearch:
         """Return the state with records that begin, or hold their input, in another way."""
         if kind.hold == "smooth":  # it never begins at rest
             kind = replace(kind, is_at_rest=False)
+        if kind.hold != "held":
+            kind = replace(kind, is_from_zero=False)
         problem = _thinned(_noisy_as(self.problem(kind), state.problem))
         if any(one.measured is not None for same in problem.outputs for one in same):
             problem = self._freed(problem.filled(state.dynamics), state.dynamics)
@@ -343,8 +347,14 @@ class RecordSearch:
 
     def _with_rest(self, state: _State) -> Iterator[_State]:
         kind = _kind(state.problem)
-        if self.is_driven and kind.hold != "smooth":
-            yield self._rebuilt(state, replace(kind, is_at_rest=not kind.is_at_rest))
+        if not self.is_driven or kind.hold == "smooth":
+            return
+        begins_at_once = any(one.input is not None and one.input[0] for same in self.records for one in same)
+        now = kind.is_at_rest, kind.is_from_zero
+        for is_at_rest, is_from_zero in ((False, False), (True, False), (True, True)):
+            is_other = (is_at_rest, is_from_zero) != now
+            if is_other and (not is_from_zero or (kind.hold == "held" and begins_at_once)):
+                yield self._rebuilt(state, replace(kind, is_at_rest=is_at_rest, is_from_zero=is_from_zero))
 
     def _with_hold(self, state: _State) -> Iterator[_State]:
         kind = _kind(state.problem)
@@ -368,7 +378,10 @@ class RecordSearch:
             for one in several:
                 rebuilt = self._rebuilt(state, replace(kind, lead=int(one.delay_s / step) + 2))
                 late.append(_State.of(rebuilt.problem, one))
-            yield from sorted(late, key=lambda one: one.score)[:TRIED]
+            likely = sorted(late, key=lambda one: one.score)[:TRIED]
+            yield from likely
+            for late_one in likely if several is not moved else ():
+                yield from self._with_hold(late_one)  # half a sample later, it is joined
 
     def _with_direct(self, state: _State) -> Iterator[_State]:
         if self.is_driven:
@@ -405,7 +418,7 @@ class RecordSearch:
 
 def _kind(problem: OutputError) -> _RecordKind:
     one = problem.outputs[0][0]
-    return _RecordKind(hold_of(one), one.is_at_rest, one.lead)
+    return _RecordKind(hold_of(one), one.is_at_rest, one.is_from_zero, one.lead)
 
 
 def hold_of(record: SampledRecord) -> str:

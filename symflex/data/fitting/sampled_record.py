@@ -58,6 +58,7 @@ class SampledRecord:
     is_joined: bool = False  # whether lines join the samples of the input; else each is held to the next
     is_smooth: bool = False  # whether it has no frequency above half the sampling rate, instead of both
     is_at_rest: bool = False  # whether nothing moved before the first sample, and the input was as there
+    is_from_zero: bool = False  # whether it was zero instead, as simulations begin
     lines: Mask | None = None  # which of the lines above 0 Hz and below half the sampling rate; None for all
     noise: Real | None = None  # shape (lines,): standard deviation of a line; None for 1
     measured: Mask | None = None  # which samples of the output there are; the others hold a guess
@@ -73,6 +74,7 @@ class SampledRecord:
         *,
         is_joined: bool,
         is_at_rest: bool = False,
+        is_from_zero: bool = False,
         lead: int = 0,
         is_smooth: bool = False,
     ) -> SampledRecord:
@@ -81,12 +83,14 @@ class SampledRecord:
         measured = None if samples.is_missing is None else ~samples.is_missing
         rounding = 0.0 if u is None else few_levels(u)[1] / np.sqrt(12)
         if u is not None and is_at_rest:
-            u = np.concatenate((np.full(lead, u[0]), u)) - u[0]
+            begun = 0.0 if is_from_zero else u[0]
+            u = np.concatenate((np.full(lead, begun), u)) - begun
         elif lead:
             y, measured = y[lead:], None if measured is None else measured[lead:]
         return SampledRecord(
-            samples.step_s, y, u, lead, is_joined, is_smooth, is_at_rest, measured=measured, rounding=rounding
-        )
+            samples.step_s, y, u, lead, is_joined, is_smooth, is_at_rest, is_from_zero, measured=measured,
+            rounding=rounding,
+        )  # fmt: skip
 
     @property
     def size(self) -> int:
