@@ -1,6 +1,7 @@
 // The page: values of parameters, roots that follow them, and what is drawn of both.
 
-const SVG = "http://www.w3.org/2000/svg", TAU = 2 * Math.PI, COLOURS = 6, PLOTS = ["magnitude", "phase", "map", "step"];
+const SVG = "http://www.w3.org/2000/svg", TAU = 2 * Math.PI, COLOURS = 6, PLOTS = ["magnitude", "phase", "map", "step", "nyquist"];
+const VIEW = 4, MOST = 1500;  // how far about 0 a Nyquist plot is drawn smoothly, with at most so many lines
 const NOTCHES = 400, LINES = 400, INSTANTS = 400, NODES = 64;
 const AROUND = [-30, -10, -4, -2, -1, -0.5, 0.5, 1, 2, 4, 10, 30];  // lines about a resonance, in its half widths
 
@@ -70,6 +71,58 @@ function delayOf(f, values, listed) {
         return two > 0 && Math.abs(one / two - 1) < 0.02 && two * tall > 1e-9 ? 0.98 * Math.min(one, two) : 0;
     }
     return 0;
+}
+
+// The loop gain of what closes a loop with a gain that its denominator is linear in: D(s, K) = D(s, 0) (1 + L). Nothing
+// where it is not linear, or where there is no loop without it.
+function loopGain(f, values, gain, omega) {
+    const s = [new Float64Array(omega.length), omega], K = values[gain];
+    const [one, none, twice] = [K, 0, 2 * K].map((x) => f.at.denominator(s, { ...values, [gain]: x })), re = [], im = [];
+    for (let k = 0; k < omega.length; k++) {
+        const [a, b] = over(one[0][k], one[1][k], none[0][k], none[1][k]), [c, d] = over(twice[0][k], twice[1][k], none[0][k], none[1][k]);
+        if (Math.hypot(c - 2 * a + 1, d - 2 * b) > 1e-6 * (1 + Math.hypot(c, d))) return null;
+        re.push(a - 1);
+        im.push(b);
+    }
+    return re.some((x, k) => Math.hypot(x, im[k]) > 1e-9) ? { w: [...omega], re, im } : null;
+}
+
+// The same at more lines, so that its curve bends little between two of them where it is near -1.
+function loopCurve(f, values, gain, omega) {
+    let found = loopGain(f, values, gain, omega);
+    for (let pass = 0; found && pass < 5; pass++) {
+        const { w, re, im } = found, size = re.map((x, k) => Math.hypot(x, im[k]));
+        const isWide = (k) => Math.min(size[k], size[k + 1]) < 3 * VIEW && Math.hypot(re[k + 1] - re[k], im[k + 1] - im[k]) > 0.1 * Math.max(0.5, Math.min(size[k], size[k + 1]));
+        const more = w.slice(1).flatMap((v, k) => (v > w[k] && isWide(k) ? [Math.sqrt(v * w[k])] : []));
+        if (!more.length || w.length + more.length > MOST) break;
+        found = loopGain(f, values, gain, Float64Array.from([...w, ...more]).sort());
+    }
+    return found;
+}
+
+// Where the loop gain crosses the unit circle and the negative axis, and which line is closest to -1. A crossing is halved
+// until doubles end.
+function marginsOf({ w, re, im }, at) {
+    const onCircle = (x, y) => Math.log(Math.hypot(x, y)), onAxis = (x, y) => (x < 0 ? y : NaN), phases = [], factors = [];
+    const crossed = (k, g) => {
+        let [lo, hi] = [w[k - 1], w[k]];
+        if (!(g(re[k - 1], im[k - 1]) * g(re[k], im[k]) < 0)) return null;
+        const isLow = g(re[k - 1], im[k - 1]) > 0;
+        for (let pass = 0; pass < 48; pass++) {
+            const middle = Math.sqrt(lo * hi);
+            if (g(...at(middle)) > 0 === isLow) lo = middle; else hi = middle;
+        }
+        return [...at(lo), lo];
+    };
+    let [nearest, where] = [Infinity, 0];
+    for (let k = 0; k < w.length; k++) {
+        const away = Math.hypot(re[k] + 1, im[k]), phase = k && crossed(k, onCircle), factor = k && crossed(k, onAxis);
+        if (away < nearest) [nearest, where] = [away, w[k]];
+        if (phase) phases.push([Math.atan2(-phase[1], -phase[0]) * 180 / Math.PI, phase[2]]);
+        if (factor) factors.push([-1 / factor[0], factor[2]]);
+    }
+    const least = (list, size) => list.reduce((best, one) => (!best || size(one[0]) < size(best[0]) ? one : best), null);
+    return { phase: least(phases, Math.abs), factor: least(factors, (x) => Math.abs(Math.log(x))), nearest: [nearest, where] };
 }
 
 // ------------------------------------------------------------------------------------------------- plots
@@ -363,10 +416,11 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
         Object.assign(document.createElement("a"), { href: URL.createObjectURL(content), download: name }).click();
         say(`${name} is saved.`);
     };
-    const drawing = () => new Blob([picture(Object.values(plots).map((p) => p.svg))], { type: "image/svg+xml" });
+    const visible = () => Object.values(plots).map((p) => p.svg).filter((svg) => svg.clientWidth);
+    const drawing = () => new Blob([picture(visible())], { type: "image/svg+xml" });
     pressed("save", () => save(drawing(), `${file}.svg`));
     pressed("png", () => {
-        const image = new Image(), canvas = document.createElement("canvas"), boxes = Object.values(plots).map((p) => p.svg.getBoundingClientRect());
+        const image = new Image(), canvas = document.createElement("canvas"), boxes = visible().map((svg) => svg.getBoundingClientRect());
         image.onload = () => {
             canvas.width = 2 * Math.max(...boxes.map((b) => b.width));
             canvas.height = 2 * boxes.reduce((sum, b) => sum + b.height + 16, 0);
@@ -393,8 +447,10 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
         checks.forEach((c, k) => { c.checked = shown.has(k); });
         all(".formulas > *").forEach((e, k) => { e.hidden = k !== i; });
         [axes, until, zoom] = [{}, 0, 1];
+        one(".gain select").replaceChildren(...functions[i].gains.map((k) => new Option(parameters[k].name, k)));
         ask();
     };
+    one(".gain select").addEventListener("change", () => { axes.loop = null; ask(); });
     checks.forEach((c, k) => {
         c.parentElement.classList.add(`k${k % COLOURS + 1}`);
         c.addEventListener("change", () => { shown[c.checked ? "add" : "delete"](k); axes.size = null; ask(); });
@@ -421,6 +477,7 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
         bode(sets);
         plane(sets, state);
         response(sets);
+        nyquist(sets);
         words(state, functions[focus]);
     };
     // A real part that the radius does not tell from zero is shown as zero.
@@ -538,6 +595,39 @@ function model(main, { PARAMETERS, TRANSFER_FUNCTIONS, data }) {
         const [y] = curves.at(-1) ?? [], told = (k) => `${short(y[k])} at ${short(times[k])} s`;
         const last = (v) => v.findIndex((z) => Math.abs(z) > 2 * most) + 1 || v.length;  // what grows ends at the edge
         plot.show(curves.map(([v, kind]) => plot.curve(times.slice(0, last(v)), v, kind)), y ? `${f.name}: ${told(INSTANTS >> 1)}, ${told(INSTANTS)}.` : "not known");
+    };
+
+    // The loop gain from 0 on, and its mirror image, about -1 and the unit circle: resonances that leave the view are cut.
+    const nyquist = (sets) => {
+        const f = functions[focus], chooser = one(".gain select"), gain = parameters[chooser.value]?.id;
+        const made = (!gain ? [] : sets).map(([given, state, ghost]) => {
+            const found = given[gain] ? loopCurve(f, given, gain, lines(state)) : null;
+            const once = (x) => {
+                const { re, im } = loopGain(f, given, gain, Float64Array.of(x)) ?? { re: [NaN], im: [NaN] };
+                return [re[0], im[0]];
+            };
+            return found && { ...found, at: once, kind: colour(focus) + ghost };
+        });
+        const now = made.at(-1);
+        one(".loop").hidden = !now;
+        if (!now) return;
+        const plot = plots.nyquist, seen = now.re.flatMap((x, k) => (Math.hypot(x, now.im[k]) < VIEW ? [[x, now.im[k]]] : []));
+        if (!axes.loop) {  // a unit is as long on both axes
+            const [lo, hi] = ends([-1.6, 0.6, ...seen.map(([x]) => x)]), tall = Math.max(1.3, ...seen.map(([, y]) => 1.1 * Math.abs(y)));
+            const wide = Math.max(plot.svg.clientWidth - 76, 1) / Math.max(plot.svg.clientHeight - 48, 1), half = Math.max((hi - lo) / 2, tall * wide);
+            axes.loop = [[(lo + hi) / 2 - half, (lo + hi) / 2 + half], half / wide];
+        }
+        plot.axes({ ends: axes.loop[0], label: "Re L" }, { ends: [-axes.loop[1], axes.loop[1]], label: "Im L" });
+        const turns = Array.from({ length: 121 }, (_, k) => TAU * k / 120), parts = [drawn("path", { class: "axis", d: `M${plot.px(0)} ${plot.top}V${plot.bottom}M${plot.left} ${plot.py(0)}H${plot.right}` }),
+            plot.curve(turns.map(Math.cos), turns.map(Math.sin), "axis")];
+        for (const { re, im, kind } of made.filter(Boolean)) parts.push(plot.curve(re, im, kind), plot.curve(re, im.map((y) => -y), `${kind} mirror`));
+        parts.push(drawn("path", { class: "pole s2", d: `M${plot.px(-1) - 5} ${plot.py(0) - 5}l10 10m0-10l-10 10` }));
+        const { phase, factor, nearest } = marginsOf(now, now.at), at = (w) => `at ${short(isHertz() ? w / TAU : w)} ${isHertz() ? "Hz" : "rad/s"}`;
+        const told = [factor ? `gain margin × ${short(factor[0])} ${at(factor[1])}` : "no gain margin in the band",
+            phase ? `phase margin ${short(phase[0], 3)}° ${at(phase[1])}` : "no phase margin in the band",
+            `closest to −1: ${short(nearest[0], 3)} ${at(nearest[1])}`].join(", ");
+        one(".margins").textContent = `${told[0].toUpperCase()}${told.slice(1)}.`;
+        plot.show(parts, one(".margins").textContent);
     };
 
     const words = (state, f) => {

@@ -29,6 +29,7 @@ from symflex.codegen.javascript import JAVASCRIPT, RESERVED, javascript_module
 from symflex.codegen.program.evaluate import nearest_double
 from symflex.drawing import LARGEST_DRAWING, drawing_of, render_drawing
 from symflex.errors import SymflexError
+from symflex.expressions import Name, names_in
 from symflex.figures.files import inline_svg
 from symflex.live.tape import FIXED, MODES, tape_of
 from symflex.model import Model, ModelParameter
@@ -124,10 +125,14 @@ def _data(contents: Contents, names: Mapping[str, str], pairs: Sequence[tuple[st
     model = contents.model
     moving = {p.name for m in contents.members for p in m.parameters}
     used = [p for p in model.settable if p.value is not None or p.name in moving]
+    drive = _in_loops(model)
     functions = []
     for member, pair in zip(contents.members, pairs, strict=True):
         tape, located = ({"refused": FIXED}, None) if member.is_fixed else tape_of(member.tf, names)
-        functions.append({**_function(member, located or _located(model, pair)), "tape": tape})
+        gains = [i for i, p in enumerate(used) if p.name in moving & drive and p.value]
+        functions.append(
+            {**_function(member, located or _located(model, pair)), "tape": tape, "gains": gains}
+        )
     # frequencies [Hz] around the roots, or the default of a frequency response
     sizes = [abs(complex(x, y)) / tau for f in functions for x, y, _ in f["poles"] + f["zeros"] if x or y]
     around = [min(sizes) / 30, max(sizes) * 3] if sizes else [0.1, 100.0]
@@ -138,6 +143,16 @@ def _data(contents: Contents, names: Mapping[str, str], pairs: Sequence[tuple[st
         "band": [float(f) for f in model.analysis.band or ()] or around,
         "specification": _pieces(model, [p.name for p in used]),
     }
+
+
+def _in_loops(model: Model) -> set[str]:
+    """Return the names that drive: in signals, in blocks, and in what sources deliver."""
+    driven = [x.expression for x in model.signals]
+    driven += [e for b in model.blocks for _, e in b.values]
+    for use in model.elements:
+        of_sources = {p.name for p in use.element.parameters if p.signal}
+        driven += [e for name, e in use.values if name in of_sources]
+    return {n.name for e in driven for n in names_in(e) if isinstance(n, Name)}
 
 
 def _parameter(p: ModelParameter, identifier: str, is_moving: bool) -> dict[str, Any]:

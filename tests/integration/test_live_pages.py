@@ -225,6 +225,33 @@ def test_the_step_of_a_delayed_loop_is_zero_until_the_delay(browser, tmp_path):
     assert last == pytest.approx(0.8 * (1 - np.exp(-1.5)), rel=0.02)
 
 
+def test_a_loop_has_a_nyquist_plot_with_margins_that_follow_the_gain(browser, tmp_path):
+    # L = K/(s (s + 1) (s + 2)) is -K/6 at omega = sqrt(2); with K = 2 it has the magnitude 1 where
+    # w^2 (w^2 + 1)(w^2 + 4) = 4, w = 0.7494, with the phase margin 90 - atan(w) - atan(w/2) = 32.6 degrees.
+    loop = """symflex = 1
+parameters = { K = 2, T_1 = "1 s", T_2 = "0.5 s" }
+signals.y = "K/(2*s*(T_1*s + 1)*(T_2*s + 1))*(r - y)"
+inputs.r = {}
+outputs.Y = "y"
+analysis.band = ["0.01 Hz", "10 Hz"]
+"""
+    opened(browser, tmp_path, pipeline.loads(loop))
+    said = browser.run("document.querySelector('.margins').textContent")
+    assert said.startswith("Gain margin × 3 at 0.2251 Hz, phase margin 32.6° at 0.1193 Hz")
+    assert browser.run("[...document.querySelector('.gain select').options].map((o) => o.text)") == [
+        "K",
+        "T_1",
+        "T_2",
+    ]
+    moved = """const field = document.querySelectorAll('.parameter > input[type=number]')[0];
+field.value = '1'; field.dispatchEvent(new Event('input', { bubbles: true }));
+await new Promise(requestAnimationFrame); await new Promise(requestAnimationFrame);
+return document.querySelector('.margins').textContent;"""
+    assert browser.run(f"(async () => {{{moved}}})()").startswith("Gain margin × 6 at 0.2251 Hz")
+    opened(browser, tmp_path, pipeline.load(ROOT / "derivations" / "eppinger1988" / "two_mass.toml"))
+    assert browser.run("document.querySelector('.loop').hidden")
+
+
 def test_phase_is_continuous_if_asked_for_and_the_pointer_reads_the_curves(browser, tmp_path):
     opened(browser, tmp_path, pipeline.loads(LATE.replace('Y = "y"', 'Y = "exp(-9*T*s)*r"')))
     script = """
