@@ -8,7 +8,7 @@ from typing import Final, Literal
 
 from symflex.algebra import LAPLACE
 from symflex.audit.corrections import Change, Correction, find_correction
-from symflex.audit.field import UnreadError
+from symflex.audit.field import GrowError, UnreadError
 from symflex.audit.laws import LawCheck, check_laws
 from symflex.audit.notation import derived_in_symbols, monomial_expression
 from symflex.audit.numeric import (
@@ -20,16 +20,27 @@ from symflex.audit.numeric import (
     numbers_of,
 )
 from symflex.audit.reading import Formula, FormulaReading, formula_of, read
+from symflex.audit.rounded import is_right_to_its_digits
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, SpecError, SymflexError, nearest, refused
-from symflex.expressions import Expression, Sum, format_expression, names, nodes
+from symflex.expressions import (
+    Expression,
+    Sum,
+    format_expression,
+    names,
+    nodes,
+    number,
+    quotient,
+    substitute,
+)
 from symflex.model import Definition, Model, Published, with_numbers
 from symflex.model.loss_factors import check_causal
 from symflex.model.units import constant_measure
+from symflex.print.forms import print_form
 from symflex.transfer import TransferFunction
 from symflex.transfer.of_model import derive_all
 
-Verdict = Literal["equal", "differs", "agrees", "undecided"]
+Verdict = Literal["equal", "rounded", "differs", "agrees", "undecided"]
 
 
 @dataclass(frozen=True)
@@ -39,12 +50,14 @@ class Audit:
     tf: TransferFunction  # the derived function
     published: Published  # what was printed
     formula: Formula  # the same with its lines in order
-    # ``equal``: proved. ``differs``: proved. ``agrees``: to 50 digits at all points, not proved.
+    # ``equal`` and ``differs``: proved. ``rounded``: proved to the digits printed. ``agrees``: to 50 digits
+    # at all points, not proved.
     # ``undecided``: none of these.
     verdict: Verdict
     unread: str = ""  # why the formula could not be read exactly; empty when it was
     # Printed over derived, where that is a number times powers of s and the parameters.
     ratio: Expression | None = None
+    taken: str = ""  # where it is right: ``b = 0``, of parameters that are not in it
     correction: Correction | None = None  # the smallest change found that makes the formula right
     # The derived function in the print's symbols, where that is possible and no correction says so.
     derived: Expression | None = None
@@ -61,7 +74,7 @@ class Audit:
     @property
     def is_certified(self) -> bool:
         """True when the verdict is proved."""
-        return self.verdict in ("equal", "differs")
+        return self.verdict in ("equal", "rounded", "differs")
 
     @property
     def changes(self) -> tuple[Change, ...]:
@@ -69,7 +82,7 @@ class Audit:
         return () if self.correction is None else self.correction.changes
 
 
-WORST: Final[Sequence[Verdict]] = ("differs", "undecided", "agrees", "equal")
+WORST: Final[Sequence[Verdict]] = ("differs", "undecided", "agrees", "rounded", "equal")
 
 
 def judge(tf: TransferFunction, published: Published) -> Audit:
@@ -94,15 +107,27 @@ def _judged_side(tf: TransferFunction, published: Published) -> Audit:
         reason = f"the model has no values for {', '.join(missing)}"
         return Audit(tf, published, found.formula, "undecided", reason)
     if not numeric:
-        return found
+        return _to_its_digits(found, tf)
     kept = [p.name for p in tf.model.parameters if p.name not in numeric]
     try:
         (with_values,) = derive_all(with_numbers(tf.model, kept, in_kernels=True), [published.tf])
         again = replace(_judged(with_values, published), numeric=tuple(numeric))
     except SymflexError:
         return found
-    is_plainer = not any(p.name in printed for p in tf.parameters) or (again.changes and not found.changes)
-    return again if again.verdict == "equal" or is_plainer else found
+    again = _to_its_digits(again, with_values)
+    is_said = found.changes or found.taken
+    is_plainer = not any(p.name in printed for p in tf.parameters) or (again.changes and not is_said)
+    return again if again.verdict in ("equal", "rounded") or is_plainer else found
+
+
+def _to_its_digits(found: Audit, tf: TransferFunction) -> Audit:
+    """Return an audit of numbers that differ only beyond the digits that are printed."""
+    form = print_form(tf)
+    if found.verdict != "differs" or form.where or found.formula.lines:
+        return found
+    if not is_right_to_its_digits(found.formula.whole, quotient(form.num, form.den)):
+        return found
+    return Audit(found.tf, found.published, found.formula, "rounded", numeric=found.numeric)
 
 
 def _judged(tf: TransferFunction, published: Published) -> Audit:
@@ -128,15 +153,16 @@ def _judged(tf: TransferFunction, published: Published) -> Audit:
 
 def _difference(audit: Audit, reading: FormulaReading | None, numbers: Numbers) -> Audit:
     measured = None if numbers.invented else numbers
-    ratio, correction, derived = None, None, None
+    ratio, taken, correction, derived = None, "", None, None
     vanishes = reading is not None and any(map(reading.field.is_zero, (reading.printed, reading.derived)))
     if reading is not None and not vanishes:
         try:
             constant = reading.field.constant_ratio(reading.printed, reading.derived)
             ratio = None if constant is None else monomial_expression(reading.field, constant)
+            taken = _taken(reading, audit.tf) if ratio is None else ""
             if ratio is None:
                 correction = find_correction(reading, audit.tf)
-            if ratio is None and correction is None:
+            if ratio is None and not taken and correction is None:
                 derived = derived_in_symbols(reading)
         except BudgetError:  # what is not found within the limits is not reported
             spend()
@@ -144,12 +170,32 @@ def _difference(audit: Audit, reading: FormulaReading | None, numbers: Numbers) 
     return replace(
         audit,
         ratio=ratio,
+        taken=taken,
         correction=correction,
         derived=derived,
         deviation=None if measured is None or vanishes else largest_deviation(measured),
         laws=() if vanishes else check_laws(reading, measured),
         units=tuple(_disagreeing_sums(audit.published, audit.tf.model)),
     )
+
+
+def _taken(reading: FormulaReading, tf: TransferFunction) -> str:
+    """Return the values of parameters that are not printed with which the formula is right, 0 or 1."""
+    form = print_form(tf)
+    expressions = (reading.formula.whole, *(e for _, e in reading.formula.lines))
+    printed = {n.name for e in expressions for n in names(e)}
+    absent = [p.name for p in tf.parameters if p.name not in printed]
+    if not absent or form.where:
+        return ""
+    for value in (0, 1):
+        given = dict.fromkeys(absent, number(value))
+        try:
+            meant = reading.value(substitute(quotient(form.num, form.den), given))
+        except (SpecError, UnreadError, GrowError):
+            continue
+        if reading.field.equal(reading.printed, meant):
+            return " and ".join(f"{name} = {value}" for name in absent)
+    return ""
 
 
 def _disagreeing_sums(published: Published, model: Model) -> Iterator[str]:

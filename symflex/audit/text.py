@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 NOTHING = 1e-30
 NEGLIGIBLE = 1e-6  # decibels or degrees below which a deviation is rounding
 VERDICTS = {
+    "rounded": "right to the digits that it prints: proved",
     "equal": "proved equal to the derived function",
     "differs": "DIFFERS from the derived function: proved",
     "agrees": "agrees with the derived function to 50 digits at 40 points: NOT PROVED",
@@ -81,9 +82,11 @@ def _difference(audit: Audit, width: int) -> list[str]:
         lines += ["", *_changes(audit), ""]
         these = "this change" if len(changes) == 1 else "these changes"
         lines += _filled(f"With {these} the printed formula is right (proved).", width, INDENT)
-    else:
+    elif not audit.taken:
         lines += [*_derived(audit, width), ""]
         lines.append(INDENT + "No small change was found that makes the printed formula right.")
+    if audit.taken:
+        lines += _filled(f"The formula as printed is right where {audit.taken} (proved).", width, INDENT)
     lines += ["", *_numbers(audit, width)]
     for sentence in audit.units:
         lines += ["", *_filled(f"units: {sentence}", width, INDENT)]
@@ -300,6 +303,7 @@ def audit_json(audit: Audit) -> dict[str, object]:
         "scale": _text(audit.published.scale),
         "where": _lines(audit.formula.lines),
         "ratio": _text(audit.ratio),
+        "right_where": audit.taken or None,
         "changes": [
             {"place": c.place, "printed": _text(c.printed), "derived": _text(c.derived)}
             for c in audit.changes

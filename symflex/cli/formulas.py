@@ -518,7 +518,7 @@ def audit(spec: Specification, given: AuditOptions) -> int:
         width = terminal_width()
         texts = (*(audit_text(each, width) for each in audits), *(table_text(each, width) for each in tables))
         say("\n\n".join(texts))
-    is_equal = bool(audits or tables) and all(each.verdict == "equal" for each in audits)
+    is_equal = bool(audits or tables) and all(each.verdict in ("equal", "rounded") for each in audits)
     is_right = all(each.is_right for each in tables)
     return 4 if given.strict and not (is_equal and is_right) else 0
 

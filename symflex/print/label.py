@@ -129,7 +129,7 @@ def _made(name: str) -> Label:
 
 
 def _stem(letters: str) -> str:
-    if letters in _GREEK:
+    if letters in (*_GREEK, "ell"):
         return f"\\{letters}"
     capitals = letters.lstrip(ascii_lowercase)
     if 0 < len(capitals) <= 2 and letters.removesuffix(capitals) in _GREEK:  # noqa: PLR2004

@@ -55,7 +55,7 @@ from symflex.expressions import (
 )
 from symflex.model import Model, Published
 from symflex.model.analysis import notation_of_model, readable_names, with_candidates
-from symflex.papers.formula import defined_symbol, definition, read_formula
+from symflex.papers.formula import defined_symbol, definition, read_formula, read_value
 from symflex.papers.laplace import in_laplace, laplace_of
 from symflex.papers.source import Paper, PrintedEquation, statements, written
 from symflex.papers.symbols import IMAGINARY, PaperNotation, PrintedSymbol
@@ -162,7 +162,9 @@ class _Item:
 
     @property
     def latex(self) -> str:
-        return written(self.equation.tokens)
+        typed = written(self.equation.tokens)
+        start, source = self.equation.span.start, self.equation.span.source.text
+        return rf"\left{typed}" if source[:start].rstrip().endswith(r"\left") else typed
 
 
 class _Court:
@@ -217,9 +219,11 @@ class _Court:
         if len(equation.sides) > MOST_SIDES:
             raise _Unjudged("not read", f"it has more than {MOST_SIDES} sides")
         notation = self.notation(model, equation)
-        sides, missed = _read_sides(equation, notation)
-        defined = {s.name for s, e in self.definitions.items() if e is equation}
-        claims = list(_claims(sides, model, {*notation.names.values()} - defined))
+        self.check_letters(equation, model, notation)
+        rows, missed = _read_sides(equation, notation)
+        sides = rows[0]
+        known = {*notation.names.values()} - {s.name for s, e in self.definitions.items() if e is equation}
+        claims = [claim for row in rows for claim in _claims(row, model, known)]
         number_of = self.models.index(model)
         for pair in model.transfer_functions:  # H = X/F = ... says what H is, also where it comes again
             if any(side == Quotient(*map(Name, pair)) for side in sides):
@@ -251,6 +255,17 @@ class _Court:
             right = [j.audit.published.tf for j in judged if j.audit is not None and j.verdict == "equal"]
             claims = [(tf, formula) for tf in right[:1] for formula in later]  # G is this function then
         return _worst(judged, missed)
+
+    def check_letters(self, equation: PrintedEquation, model: Model, notation: PaperNotation) -> None:
+        """Refuse an equation with K(s) in a paper that defines it, if K is a parameter of the model."""
+        texts = [t.text for t in equation.tokens]
+        constant = {p.name for p in model.parameters}
+        for symbol, other in self.definitions.items():
+            letters = [t.text for t in other.sides[0]]
+            if notation.names.get(symbol) in constant and letters[-3:] == ["(", LAPLACE, ")"]:
+                if any(texts[i : i + len(letters)] == letters for i in range(len(texts))):
+                    said = f"{symbol.name}(s) is a function by line {other.span.line}"
+                    raise _Unjudged("not read", f"{said}, and {symbol.name} a parameter of the model")
 
     def by_letter(
         self, item: _Item, model: Model, letter: str, formula: Expression, notation: PaperNotation
@@ -307,7 +322,7 @@ class _Court:
         if tf is None and best.verdict == "different":
             near = f"; {best.audit.tf.name} would need: {best.slip}" if best.audit and best.slip else ""
             raise _Unjudged("other model", f"it is none of the transfer functions of the models{near}")
-        if best.verdict == "different" and best.audit is not None and not best.audit.changes:
+        if best.verdict == "different" and best.audit is not None and not best.slip:
             best = _repaired(best, self)
         return best
 
@@ -458,9 +473,14 @@ def _labelled(found: Sequence[PrintedEquation], labels: Sequence[tuple[int, str]
 
 def _read_sides(
     equation: PrintedEquation, notation: PaperNotation
-) -> tuple[list[Expression], list[_Unjudged | SpecError]]:
-    """Return the sides that are read, in s, and why others are not; the first one has to be read."""
+) -> tuple[list[list[Expression]], list[_Unjudged | SpecError]]:
+    """Return the sides that are read, in s, and why others are not; the first one has to be read.
+
+    Of vectors it is one list for each row.
+    """
     laplace = laplace_of(equation, notation)
+    if (rows := _rows(equation, notation, laplace)) is not None:
+        return [in_laplace(row, notation)[0] for row in rows], []
     sides = [read_formula(equation.sides[0], notation, laplace=laplace)]
     missed: list[_Unjudged | SpecError] = []
     for side in equation.sides[1:]:
@@ -468,7 +488,20 @@ def _read_sides(
             sides.append(read_formula(side, notation, laplace=laplace))
         except SpecError as error:
             missed.append(error)
-    return in_laplace(sides, notation)[0], missed
+    return [in_laplace(sides, notation)[0]], missed
+
+
+def _rows(equation: PrintedEquation, notation: PaperNotation, laplace: str) -> list[list[Expression]] | None:
+    """Return the rows of an equation between vectors, ``None`` for other equations."""
+    if not any(t.text == r"\begin" for t in equation.sides[0]):
+        return None
+    vectors = [read_value(side, notation) for side in equation.sides]
+    if any(isinstance(v, Expression) or len(v.rows[0]) != 1 for v in vectors):
+        return None
+    columns = [[row[0] for row in v.rows] for v in vectors if not isinstance(v, Expression)]
+    if len({len(column) for column in columns}) != 1:
+        return None
+    return [[substitute(e, {laplace: Name(LAPLACE)}) for e in row] for row in zip(*columns, strict=True)]
 
 
 def _worst(judged: Sequence[JudgedFormula], missed: Sequence[_Unjudged | SpecError]) -> JudgedFormula:
@@ -505,6 +538,8 @@ def _claims(
     pairs, inputs = model.transfer_functions, {item.name for item in model.inputs}
     found = False
     for i, left in enumerate(sides):
+        if not i and isinstance(left, Name) and len(sides) > 2:  # noqa: PLR2004 (G = X/F = ... says what G is)
+            continue
         for right in sides[i + 1 :]:
             for pair in pairs:
                 formula = _solved(left, right, pair, inputs)
@@ -572,10 +607,16 @@ def _superposed(terms: Sequence[Expression], pair: tuple[str, str], inputs: Set[
             return None
         parts[held[0]].append(split[0])
     output, given = (parts[name] for name in pair)
-    return _over(sum_of(given), negative(sum_of(output))) if output and given else None
+    if not output or not given:
+        return None
+    turned = all(isinstance(part, Negative) for part in output)
+    above, below = (given, map(negative, output)) if turned else (map(negative, given), output)
+    return _over(sum_of(above), sum_of(below))
 
 
 def _over(above: Expression, below: Expression) -> Expression:
+    if isinstance(below, Quotient) and is_number(below.numerator, 1):
+        return product_of([below.denominator, above])
     return above if is_number(below, 1) else quotient(above, below)
 
 
@@ -614,8 +655,9 @@ def _rank(judged: JudgedFormula) -> tuple[int, int]:
 def _judged(item: _Item, model: Model, audit: Audit) -> JudgedFormula:
     """Return what an audit says of a formula."""
     found = JudgedFormula(item.latex, item.label, item.equation.span, "not read", model=model, audit=audit)
-    if audit.verdict == "equal":
-        return replace(found, verdict="equal")
+    if audit.verdict in ("equal", "rounded"):
+        reason = "" if audit.verdict == "equal" else "its numbers are right to the digits that it prints"
+        return replace(found, verdict="equal", reason=reason)
     if audit.verdict != "differs":
         is_near = audit.verdict == "agrees"
         return replace(
@@ -623,7 +665,8 @@ def _judged(item: _Item, model: Model, audit: Audit) -> JudgedFormula:
         )
     if audit.ratio is not None:
         return replace(found, verdict="factor", slip=_ratio_said(audit))
-    return replace(found, verdict="different", slip=_changes_said(audit))
+    where = f"it is right where {audit.taken}" if audit.taken else ""
+    return replace(found, verdict="different", slip="; ".join(filter(None, (_changes_said(audit), where))))
 
 
 def _ratio_said(audit: Audit) -> str:
@@ -723,7 +766,13 @@ def _with_brackets(node: Expression) -> Expression:
 def _with_scale(judged: JudgedFormula, scales: Iterable[Expression]) -> JudgedFormula:
     """Return a formula judged anew with the factor that another formula of the paper lacks."""
     audit = judged.repaired or judged.audit
-    if judged.verdict != "different" or audit is None or audit.changes or audit.ratio is not None:
+    if (
+        judged.verdict != "different"
+        or audit is None
+        or audit.changes
+        or audit.taken
+        or audit.ratio is not None
+    ):
         return judged
     for ratio in scales:
         candidates = [("", audit.published)]
@@ -811,12 +860,18 @@ def _table_said(judged: JudgedTable) -> str:
 
 def referee_page(title: str, judged: Sequence[JudgedFormula], tables: Sequence[JudgedTable] = ()) -> Report:
     """Return a page with the formulas beside their verdicts, and what is wrong in tables."""
-    sections = [Section(j.where, tuple(_shown(j)), f"formula-{i + 1}") for i, j in enumerate(judged)]
+    sections = [
+        Section(_heading(j.where), tuple(_shown(j)), f"formula-{i + 1}") for i, j in enumerate(judged)
+    ]
     sections += [
-        Section(f"table, line {t.span.line}", (text(Code(_table_said(t))),), f"table-{i + 1}")
+        Section(f"Table, line {t.span.line}", (text(Code(_table_said(t))),), f"table-{i + 1}")
         for i, t in enumerate(tables)
     ]
     return Report(title, "printed formulas against models", "", tuple(sections), {}, (), 0)
+
+
+def _heading(where: str) -> str:
+    return f"L{where[1:]}" if where.startswith("line ") else where
 
 
 def _shown(j: JudgedFormula) -> Iterator[Block]:
@@ -878,6 +933,7 @@ def errata_latex(judged: Sequence[JudgedFormula]) -> str:
             said.append(f"divide the right side by ${latex_expression(best.ratio, labels)}$")
         elif best.published.scale is not None:
             said.append(f"multiply the right side by ${latex_expression(best.published.scale, labels)}$")
+        said += [f"it holds where {best.taken}"] if best.taken else []
         right = best.correction.expression if best.correction is not None else best.derived
         if not said and right is not None:
             said.append(f"the right side should be ${latex_expression(right, labels)}$")

@@ -175,6 +175,7 @@ def _introduction(tf: AnyTransferFunction) -> str:
 
 JUDGED: Final[Mapping[str, tuple[str, Tone]]] = {
     "equal": ("right as printed (proved)", "good"),
+    "rounded": ("right to the digits that it prints (proved)", "good"),
     "differs": ("not right as printed (proved)", "bad"),
     "agrees": ("agrees at all points tried (not proved)", "fair"),
     "undecided": ("not decided", "fair"),
@@ -202,7 +203,7 @@ def _audited(audit: Audit) -> tuple[Block, ...]:
     blocks.append(_formula(audit, audit.published.expression, where, f"{audit.tf.name} as printed"))
     if scale is not None:
         blocks.append(text("times ", mathematics(scale, audit.tf.model), ", a scale that is not printed."))
-    if audit.verdict == "equal":
+    if audit.verdict in ("equal", "rounded"):
         return tuple(blocks)
     if audit.verdict != "differs":
         blocks.append(text(f"The formula {VERDICTS[audit.verdict]}."))
@@ -210,6 +211,8 @@ def _audited(audit: Audit) -> tuple[Block, ...]:
         blocks.append(
             text("It is the derived function times ", mathematics(audit.ratio, audit.tf.model), ".")
         )
+    if audit.taken:
+        blocks.append(text(f"It is right where {audit.taken} (proved)."))
     if audit.correction is not None:
         blocks.append(text("Corrected, in the same symbols:"))
         lines = audit.correction.lines if audit.correction.lines != where else ()

@@ -236,3 +236,68 @@ def test_beside_a_frequency_i_is_no_current():
         'symflex = 1\nparameters = { R = {}, L = {} }\ninputs = { I = {} }\noutputs = { V = "(R + L*s)*I" }'
     )
     assert verdicts(r"Z = R + i \omega L", spec)[0][0] == "equal"
+
+
+def test_a_letter_that_is_said_anew_is_no_formula_for_its_new_meaning():
+    spec = """
+    symflex = 1
+    parameters = { K = {}, G = {} }
+    inputs = { X = {} }
+    outputs = { Y = "K*G/(1 + K*G)*X", E = "X/(1 + K*G)" }
+    """
+    paper = r"$$ T = \frac{Y}{X} = \frac{KG}{1 + KG} $$ $$ T = \frac{E}{X} = \frac{1}{1 + KG} $$"
+    assert [j.verdict for j in judged(loads(spec), paper)] == ["equal", "equal"]
+
+
+def test_a_function_by_the_letter_of_a_parameter_is_refused():
+    spec = """
+    symflex = 1
+    parameters = { K = {}, J = {}, K_p = {} }
+    inputs = { V = {} }
+    outputs = { E = "1/(1 + K_p*K/(J*s))*V" }
+    """
+    paper = r"$$ K(s) = K_p, \quad G(s) = \frac{K}{Js} $$ $$ \frac{E(s)}{V(s)} = \frac{1}{1 + K(s)G(s)} $$"
+    last = judged(loads(spec), paper)[-1]
+    assert (last.verdict, last.reason) == (
+        "not read",
+        "K(s) is a function by line 1, and K a parameter of the model",
+    )
+
+
+MASS = """
+symflex = 1
+parameters = { m = "2 kg", b = "0.3 N*s/m", k = "7 N/m" }
+inputs = { F = {} }
+outputs = { X = "F/(m*s^2 + b*s + k)" }
+"""
+
+
+@pytest.mark.parametrize(
+    ("latex", "verdict", "said"),
+    [
+        (
+            r"\frac{X}{F} = \frac{1}{ms^2 + k}",
+            "different",
+            "denominator: b*s is missing; it is right where b = 0",
+        ),
+        (r"\frac{X}{F} = \frac{0.5}{s^2 + 0.15 s + 3.5}", "equal", ""),
+        (r"\frac{X}{F} = \frac{0.14}{0.29 s^2 + 0.043 s + 1}", "equal", ""),
+        (r"\frac{X}{F} = \frac{0.14}{0.29 s^2 + 0.053 s + 1}", "different", None),
+    ],
+)
+def test_numbers_count_to_their_digits_and_neglected_terms_are_named(latex, verdict, said):
+    """By hand: 1/k = 0.142857, m/k = 0.285714, b/k = 0.0428571."""
+    ((found),) = judged(loads(MASS), f"$$ {latex} $$")
+    assert found.verdict == verdict
+    if said is not None:
+        assert found.slip == said
+
+
+def test_vectors_are_judged_row_by_row():
+    right = (
+        r"\begin{pmatrix} X_1 \\ X_2 \end{pmatrix} = \begin{pmatrix} bs + k + m_2s^2 \\ bs + k \end{pmatrix}"
+    )
+    whole = rf"$$ {right} \frac{{F}}{{s^2(m_1m_2s^2 + (m_1+m_2)(bs+k))}} $$"
+    ((one),) = judged(loads(MODEL), whole)
+    ((other),) = judged(loads(MODEL), whole.replace("m_2s^2 \\", "2m_2s^2 \\"))
+    assert (one.verdict, other.verdict) == ("equal", "different")
