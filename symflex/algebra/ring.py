@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import compress
 from math import comb, prod
 from typing import Generic, TypeVar, cast
 
@@ -243,7 +244,8 @@ def terms_of(polynomial: fmpz_mpoly) -> list[tuple[Monomial, int]]:
     """
     if (sparse := _sparse(polynomial)) is not None:
         return sparse.ordered()
-    return [(tuple((i, int(e)) for i, e in enumerate(m) if e), int(c)) for m, c in polynomial.terms()]
+    # Of the exponents of a few hundred generators, most are zero.
+    return [(tuple((i, int(e)) for i, e in compress(enumerate(m), m)), int(c)) for m, c in polynomial.terms()]
 
 
 def irreducible_factors(polynomial: fmpz_mpoly) -> tuple[int, list[tuple[fmpz_mpoly, int]]]:

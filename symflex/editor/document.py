@@ -21,6 +21,7 @@ from symflex.library.elements import ELEMENTS
 from symflex.model import Model
 from symflex.model.spec import (
     ArrayValue,
+    KeyValue,
     Spec,
     StringValue,
     TableValue,
@@ -38,6 +39,8 @@ NODE_KEYS = {port.name for e in ELEMENTS.values() for port in e.ports} | {
 }
 MOST_SECONDS = 3.0  # of an examination, behind which the next keystroke waits
 _NAME = re.compile(r"(?<![\w.])[A-Za-z]\w*")
+_NAMES_AS_KEYS = {"operating_point", "published", "forces", "set"}
+"""Tables whose keys are names that are defined elsewhere, or transfer functions between them."""
 _NAMED_LISTS = {"equations": "unknowns", "energy": "coordinates"}
 """Sections that name their unknowns in a list, and its key."""
 
@@ -75,7 +78,7 @@ class OpenDocument:
             return ()
         found = sorted(_names(self.spec.root), key=lambda each: each.span.start)
         defined = {each.name for each in found if each.is_definition}
-        first = {n.name: n.span for n in reversed(found) if n.is_node and n.name not in defined}
+        first = {n.name: n.span for n in reversed(found) if n.is_node and n.name not in {*defined, "ground"}}
         return tuple(
             replace(
                 each,
@@ -108,6 +111,8 @@ def _names(root: TableValue) -> Iterator[Occurrence]:
         for entry in section.value.entries:
             if section.key in DEFINING:
                 yield Occurrence(entry.key, _bare(entry.key_span, entry.key), True, False)
+            elif section.key in _NAMES_AS_KEYS:
+                yield from _of_key(entry)
             if entry.key == _NAMED_LISTS.get(section.key):
                 yield from (replace(each, is_definition=True) for each in _within(entry.value, entry.key))
             else:
@@ -120,9 +125,12 @@ def _within(value: Value, key: str, where: frozenset[str] = frozenset()) -> Iter
         inner = value.get("where")
         if inner is not None and isinstance(inner.value, TableValue):
             where |= set(inner.value.keys())
+        is_of_another_file = value.get("spec") is not None
         for entry in value.entries:
-            if key == "set":
-                yield Occurrence(entry.key, _bare(entry.key_span, entry.key), False, False)
+            if entry.key == "tf" and is_of_another_file:
+                continue
+            if key in _NAMES_AS_KEYS:
+                yield from _of_key(entry)
             yield from _within(entry.value, entry.key, where)
     elif isinstance(value, ArrayValue):
         for item in value.items:
@@ -131,6 +139,14 @@ def _within(value: Value, key: str, where: frozenset[str] = frozenset()) -> Iter
         for match in _NAME.finditer(value.text.value):
             if match[0] not in where and value.text.verbatim:
                 yield Occurrence(match[0], value.text.at(*match.span()), False, key in NODE_KEYS)
+
+
+def _of_key(entry: KeyValue) -> Iterator[Occurrence]:
+    """Yield the names in a key."""
+    span = _bare(entry.key_span, entry.key)
+    for match in _NAME.finditer(entry.key):
+        start, end = match.span()
+        yield Occurrence(match[0], Span(span.source, span.start + start, span.start + end), False, False)
 
 
 def _bare(span: Span, name: str) -> Span:

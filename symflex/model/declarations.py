@@ -303,12 +303,11 @@ def _quantity(reader: Reader, entry: KeyValue, what: str, named: Collection[str]
     plain = Reader()
     quantity = plain.quantity(entry.value, what)
     text = entry.value.text if isinstance(entry.value, StringValue) else None
-    also = _formula_hint(text, named) if text else None
     formula = Reader()
     if text and text.value.replace("*", "/").split("/")[0].strip() in {*named, "pi"}:
         formula.read(parse, text)  # a formula with a mistake in it
     for problem in formula.problems or plain.problems:
-        hints = (problem.hint, also if problem.code == "SF202" else None)
+        hints = (problem.hint, _formula_hint(text, named) if text and problem.code == "SF202" else None)
         reader.take((replace(problem, hint="; ".join(filter(None, hints)) or None),))
     return quantity
 

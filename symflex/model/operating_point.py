@@ -276,7 +276,7 @@ class _AboutRest:
                 continue
             message, hint = (
                 f"unknown name '{name}'",
-                nearest_name(name, [*moving, *self.constants.expressions]),
+                nearest_name(name, sorted({*moving, *self.constants.expressions})),
             )
             if name in self.constants.expressions:
                 message, hint = f"'{name}' is constant and has no derivative in time", None
@@ -291,7 +291,7 @@ class _AboutRest:
                 message = (
                     f"'{format_expression(leaf)}' is not a parameter; values at equilibrium are constant"
                 )
-                hint = nearest_name(format_expression(leaf), list(self.constants.expressions))
+                hint = nearest_name(format_expression(leaf), sorted(self.constants.expressions))
                 self.reader.note("SF210", message, leaf.span or value.span, hint)
 
     def linear(self, equation: Equation) -> Equation | None:

@@ -138,11 +138,13 @@ _Result = tuple[Constant, PlacedUnit]
 NOT_IN_PARAMETERS = f"a parameter is real; {IMAGINARY_UNIT}"
 _ONE_NUMBER: Final = "write the number before the unit; a unit contains no number except 1 in '1/s'"
 _NO_GROUPS: Final = "digits are not grouped, as in '12000 m'"
+REMEMBERED: Final = 4096  # quantities, most of which an editor asks for again at each keystroke
 NEARER: Final = "choose a unit in which the number is closer to 1"
 # Stands at no place, so that a unit alone never seems to touch it.
 _NO_CONSTANT: Final = Constant(Fraction(1), 0, -1, -1)
 
 
+@functools.lru_cache(maxsize=REMEMBERED)
 def evaluate(value: str, kind: str) -> tuple[Constant, PlacedUnit]:
     """Read a text as a ``"quantity"`` or a ``"unit"``, of which a part that is missing is 1.
 

@@ -84,8 +84,58 @@ def test_a_name_changes_everywhere_or_nowhere(old, new):
     assert renamed(after, new, old) == MODEL
 
 
+AT_REST = """symflex = 1
+[parameters]
+k = "3 N/m"
+[equations]
+unknowns = ["x"]
+equations = ["s^2*x + k*x^3 = F"]
+[operating_point]
+x = 2
+F = "8*k"
+[inputs]
+F = {}
+[outputs]
+X = "x"
+[published."X/F"]
+expr = "1/(s^2 + 12*k)"
+[tables.first]
+of = "poles"
+tf = "X/F"
+prints = "omega"
+rows = [{ set = { k = "3 N/m" }, values = [6] }]
+"""
+
+
+@pytest.mark.parametrize("old", ["x", "F", "X", "k"])
+def test_a_name_changes_in_keys_too(old):
+    assert document(AT_REST).model is not None
+    text = renamed(document(AT_REST), old, "new")
+    assert renamed(document(text), "new", old) == AT_REST
+    assert old not in {n.name for n in document(text).names}
+
+
+def test_names_of_another_file_stay_and_a_shared_parameter_is_not_parted(tmp_path):
+    (tmp_path / "inner.toml").write_text(MODEL)
+    block = '[blocks]\nG = { type = "model", spec = "inner.toml", tf = "X/F" }\n'
+    text = f'symflex = 1\n[parameters]\nm = "3 kg"\n{block}[inputs]\nF = {{}}\n[outputs]\nX = "m*G*F"\n'
+    outer = examined(text, str(tmp_path / "outer.toml"))
+    assert renamed(outer, "F", "u").count("F") == 1 and renamed(outer, "X", "Y").count("X") == 1
+    with pytest.raises(UsageError, match="several meanings"):
+        renamed(outer, "m", "m_1")
+
+
 @pytest.mark.parametrize(
-    ("old", "new"), [("m", "k"), ("m", "s"), ("m", "1m"), ("spring", "coil"), ("x", "ground")]
+    ("old", "new"),
+    [
+        ("m", "k"),
+        ("m", "s"),
+        ("m", "1m"),
+        ("spring", "coil"),
+        ("x", "ground"),
+        ("ground", "wall"),
+        ("s", "p"),
+    ],
 )
 def test_a_rename_that_would_change_the_model_is_refused(old, new):
     with pytest.raises(UsageError):
