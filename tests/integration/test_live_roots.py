@@ -63,6 +63,11 @@ export const isolated = (tape, z) => {
     f.bind([]);
     return enclosed(f, z);
 };
+export const unsure = (radius) => {
+    const m = discs(2);
+    const at = (_, x, y, r) => { put(m, 0, x, y, r); put(m, 1, 0.0, 0.0, radius); };
+    return counted({ m, at, value: 0, growth: [1], divisors: [] }, 1.0);
+};
 export const chords = (tape, radius) => {
     const f = factorOf(tape), discs = [];
     f.bind([]);
@@ -102,7 +107,9 @@ outputs.Y = "y"
 def node(tmp_path):
     (tmp_path / "live.mjs").write_text(KERNEL + WALK, encoding="utf-8")
     node = Node(tmp_path)
-    node.lines.insert(0, 'import { walked, computed, evaluated, isolated, chords } from "./live.mjs";')
+    node.lines.insert(
+        0, 'import { walked, computed, evaluated, isolated, chords, unsure } from "./live.mjs";'
+    )
     return node
 
 
@@ -196,9 +203,12 @@ def test_a_pole_that_crosses_the_axis_turns_the_verdict(node):
         {"m": 1.0, "k": 100.0, "b": b, "a": 0.3, "h": 2.0} for b in (0.3, -0.3, 30.0, 20.0)
     ]  # sin^2 + cos^2 = 1
     tape = tape_of(tf, {p.name: p.name for p in tf.parameters})[0]
-    key = node.keep(f"walked({json.dumps(tape)}, {json.dumps(at[0])}, {json.dumps(at)})")
+    key, other = (
+        node.keep(f"walked({json.dumps(tape)}, {json.dumps(at[n])}, {json.dumps(at)})") for n in (0, 3)
+    )
     node.run()
     states = node.values[key]
+    assert [state["stability"] for state in node.values[other]] == [state["stability"] for state in states]
     assert [state["stability"] for state in states] == ["stable", "unstable", "stable", "unknown"]
     assert [state["certified"]["poles"] for state in states] == [True, True, True, False]
     assert [len(state["poles"]) for state in states[:3]] == [1, 1, 2]
@@ -239,18 +249,36 @@ def test_a_newton_step_that_leaves_its_disc_proves_no_root(node):
 
 
 def test_the_discs_of_a_count_reach_from_corner_to_corner_and_no_farther(node):
-    # s + 3 has no root within 1, and one within 4: sixteen chords of half a polygon decide both.
+    # s + 3 has a root within 4 and more: sixteen chords of half a polygon decide all. Corners
+    # are rounded, by their size and not by a chord's, so discs are larger by 1e-15 of it.
+    radii = (1, 4, 1e6, 1e-6)
     rows = [["s"], ["#", 3, 0, 0], ["+", 0, 1], ["#", 0, 0, 0]]
     part = {"tape": rows, "value": 2, "slope": 3, "growth": [3], "divisors": []}
-    keys = [node.keep(f"chords({json.dumps(part)}, {radius})") for radius in (1, 4)]
+    keys = [node.keep(f"chords({json.dumps(part)}, {radius})") for radius in radii]
     node.run()
-    for key, radius, count in zip(keys, (1, 4), (0, 1), strict=True):
+    for key, radius, count in zip(keys, radii, (0, 1, 1, 0), strict=True):
         assert node.values[key]["count"] == count
         discs = [(complex(x, y), r) for x, y, r, *_ in node.values[key]["discs"][1:] if r]
         corners = [radius * cmath.exp(1j * math.pi * k / 16) for k in range(17)]
         # The last chord comes first.
         for (centre, r), ends in zip(discs[::-1], pairwise(corners), strict=True):
-            assert all(1 - 1e-15 < r / abs(end - centre) < 1 + 1e-12 for end in ends)
+            assert all(0.7e-15 * radius < r - abs(end - centre) < 1e-12 * radius for end in ends)
+
+
+def test_what_both_ends_of_every_chord_are_unsure_of_adds_up_to_less_than_half_a_root(node):
+    # s itself turns by pi about half a polygon, on 16 chords: 16 (2 r + 4e-5) is below 1/2 for r < 0.015605.
+    keys = [node.keep(f"unsure({radius})") for radius in (0.0, 0.0156, 0.01561)]
+    node.run()
+    assert [node.values[key] for key in keys] == [1, 1, -1]
+
+
+def test_a_window_with_a_pole_of_a_wavenumber_is_not_counted(node):
+    # s + 3 in a law that divides by s + 2: within 1 there is no root, within 4 nothing is said.
+    rows = [["s"], ["#", 3, 0, 0], ["+", 0, 1], ["#", 0, 0, 0], ["#", 2, 0, 0], ["+", 0, 4]]
+    part = {"tape": rows, "value": 2, "slope": 3, "growth": [3], "divisors": [5]}
+    keys = [node.keep(f"chords({json.dumps(part)}, {radius}).count") for radius in (1, 1.99, 2, 4)]
+    node.run()
+    assert [node.values[key] for key in keys] == [0, 0, -1, -1]
 
 
 def test_numbers_that_are_no_doubles_have_a_radius_that_reaches_them():

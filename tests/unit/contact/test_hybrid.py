@@ -119,6 +119,15 @@ def test_another_machine_is_refused(given, reason):
     assert reason in problem.message
 
 
+def test_a_mass_behind_a_damper_is_another_machine():
+    # Z = b + b m s/(m s + b): of first order above and below.
+    text = HANDLE.replace('at = "x", m', 'at = "y", m')
+    link = 'link = { type = "damper", between = ["x", "y"], b = "b" }'
+    model = pipeline.loads(text.format(wall=PD, delay="0", force="-wall*x", more=link))
+    with pytest.raises(ModelError, match="it is no mass with"):
+        find_hybrid(model, "x")
+
+
 @pytest.mark.parametrize(
     ("name", "limits", "ends"),
     [

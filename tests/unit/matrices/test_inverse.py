@@ -89,6 +89,14 @@ def test_the_return_difference_adds_the_unit_matrix_and_its_inverse_is_the_sensi
     assert np.allclose(inverse(closed).bind().at(s), np.linalg.inv(whole), rtol=1e-12)
 
 
+def test_loops_are_closed_from_as_many_outputs_to_as_many_inputs() -> None:
+    wide = derive_matrix(model_of(CROSSED), ["x", "z"])
+    turned = inverse(derive_matrix(model_of(TWO_MASSES)))  # whose outputs are imposed
+    for matrix in (wide, turned):
+        with pytest.raises(UsageError, match="loops are closed from as many outputs"):
+            return_difference(matrix)
+
+
 def test_characteristic_loci_are_followed_and_multiply_to_the_determinant() -> None:
     bound = derive_matrix(model_of(TWO_MASSES)).bind()
     s = 1 + 1j * np.linspace(0.1, 8, 40)

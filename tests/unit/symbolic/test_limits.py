@@ -238,3 +238,8 @@ def test_a_fin_that_is_cooled_along_its_length_has_a_static_gain():
     assert abs(found.subs({x: numbers[x.name] for x in found.free_symbols}) / wanted - 1) < 1e-12
     assert limits.row("s -> 0").value == pytest.approx(13.2054270974, rel=1e-11)
     assert "where gamma_0 = sqrt(h*P/(k*A))" in str(limits)
+
+
+def test_a_term_that_a_delay_turns_has_no_slope_beside_it() -> None:
+    text = str(limits_of(CASES["loop with a delay"][0]))
+    assert "exp(-T*s)" in text and "dB/decade" not in text

@@ -1,17 +1,22 @@
 """Symbolic roots: formulas as books print them, kinds of roots against numpy, refusals."""
 
 import re
+from collections import Counter
+from collections.abc import Sequence
+from math import prod
 from pathlib import Path
 from random import Random
 
 import numpy as np
 import pytest
 import sympy
+from flint import fmpz_mpoly
 
 from symflex import pipeline
+from symflex.algebra import Ring
 from symflex.expressions import format_expression
 from symflex.symbolic.frequency_equation import symbolic_roots
-from symflex.symbolic.roots import SymbolicFactor, symbolic_text
+from symflex.symbolic.roots import SymbolicFactor, _even_kinds, symbolic_text
 
 CLASSICS = Path(__file__).parents[3] / "derivations" / "classics"
 
@@ -225,6 +230,35 @@ def test_kinds_of_roots_of_even_polynomials_are_those_numpy_finds() -> None:
         wrong += [(text, words) for words in true if counts_in(words) != kind_of(np.array(numbers[::-1]))]
     assert not wrong
     assert held > len(draws) // 2
+
+
+def test_signs_that_imply_a_kind_of_roots_hold_for_roots_of_this_kind_alone() -> None:
+    """Roots are drawn by kind, scales apart and alike; every kind but two quartets near an axis is told."""
+    random, ring = np.random.default_rng(5), Ring(("s", *"abcde"))
+    names = [ring.generator(name) for name in "abcde"]
+    kinds = {pairs: _even_kinds(ring, names[: pairs + 1]) for pairs in (1, 2, 3, 4)}
+    told: Counter[str] = Counter()
+    for _ in range(800):
+        pairs = int(random.choice([1, 2, 3, 4], p=[0.1, 0.2, 0.3, 0.4]))
+        quartets = int(random.integers(0, pairs // 2 + 1))
+        sizes = 10.0 ** random.uniform(-1, 1, pairs)
+        sign = random.choice([-1, 1]) if random.random() < 0.5 else random.choice([-1, 1], pairs)
+        squares = [*(sizes * sign)[2 * quartets :]]
+        for size in sizes[:quartets]:
+            turned = size * np.exp(1j * random.uniform(0.05, np.pi - 0.05))
+            squares += [turned, turned.conjugate()]
+        numbers = (random.choice([-1, 1]) * np.poly(squares).real)[::-1]
+        for words, conditions in kinds[pairs]:
+            if all(sign * evaluated(f, numbers) > 0 for f, sign in conditions):
+                assert counts_in(words) == kind_of(numbers[::-1]), (words, numbers)
+                told[words] += 1
+    assert min(told.values()) > 5 and len(told) == 2 + 4 + 4 + 6
+
+
+def evaluated(polynomial: fmpz_mpoly, values: Sequence[float]) -> float:
+    """Return a polynomial in s, which is not in it, and a, b, ..."""
+    terms = polynomial.terms()
+    return sum(int(n) * prod(x ** int(e) for x, e in zip(values, m[1:], strict=False)) for m, n in terms)
 
 
 def test_a_condition_says_where_a_pair_becomes_real() -> None:

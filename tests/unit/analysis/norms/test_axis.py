@@ -75,13 +75,14 @@ def test_values_on_a_ball_contain_those_at_its_rim():
 
 @dataclass
 class Power:
-    """((s - j)/radius)^power, which is 1 at most in a disc about j, and 1 on all of its rim."""
+    """((s - j)/radius)^power, which is 1 on all of the rim of a disc about j, and no larger within."""
 
     power: int
     radius: float
 
-    def around(self, _):
-        return acb(1)
+    def around(self, s):
+        # What it is on the disc in a box, which is less than in its corners.
+        return acb((min(s.real.rad(), s.imag.rad()) / self.radius) ** self.power)
 
     def at(self, s):
         return ((s - acb(0, 1)) / self.radius) ** self.power

@@ -4,9 +4,12 @@ from math import pi, sqrt
 
 import numpy as np
 import pytest
+from flint import acb, acb_mat, arb
 from scipy.linalg import solve_continuous_lyapunov
 
 import symflex
+from symflex.analysis.norms.axis import MatrixOnAxis, TaylorForm
+from symflex.analysis.norms.energy import _Integral, _over, _Share
 from tests.unit.analysis.norms.models import cantilever, squares_of_frequencies, two_masses
 
 
@@ -17,6 +20,29 @@ def h2(text, noise=""):
 
 def contains(ball, value, share=1e-13):
     return abs(float(ball.mid()) - value) <= float(ball.rad()) + share * abs(value)
+
+
+def test_the_integral_over_a_form_holds_what_it_lacks_in_phase_and_against_it():
+    # abs(2 + t)^2 over [-3, 3] is 8*3 + 2*27/3; and what is 1/4 larger or smaller than 2 throughout.
+    powers = (acb_mat(1, 2, [2, 0]), acb_mat(1, 2, [1, 0]))
+    assert _over(TaylorForm(powers, arb(0)), arb(3)).overlaps(arb(24 + 18))
+    assert _over(TaylorForm(powers, arb(0)), arb(3)).rad() < 1e-9
+    found = _over(TaylorForm(powers[:1], arb(0.25)), arb(3))
+    assert found.contains(6 * 2.25**2 * (1 - 1e-9)) and found.contains(6 * 1.75**2)
+    assert found.upper() < 6 * 2.25**2 * (1 + 1e-6)
+    turned = (acb_mat(1, 1, [acb(0, 2)]), acb_mat(1, 1, [1]))  # abs(2 j + t)^2 is 4 + t^2
+    assert _over(TaylorForm(turned, arb(0)), arb(3)).overlaps(arb(24 + 18))
+
+
+def test_an_integral_is_not_enough_while_a_piece_is_without_bound():
+    integral = _Integral(MatrixOnAxis(((None,),)), None)
+    for value, enough in ((arb(1), True), (arb(1, 0.5), False), (arb("inf"), False)):
+        share = _Share((0.0, 1.0), value, in_disc=True)
+        integral._count(_Share((1.0, 2.0), arb(1), in_disc=True), 1)
+        integral._count(share, 1)
+        assert integral.is_enough() is enough
+        integral._count(share, -1)
+        assert integral.is_enough()
 
 
 def test_norms_known_by_hand():

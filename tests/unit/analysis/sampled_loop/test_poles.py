@@ -57,6 +57,17 @@ def test_a_pole_is_given_in_s_too():
     assert float(pole.s.real.mid()) == pytest.approx(-2 * np.log(2), rel=1e-12)
 
 
+def test_poles_in_s_are_the_logarithms_of_those_in_z():
+    # z - 1 + K T = 0 at z = -1/2: s = (ln(1/2) + pi j)/T; and z^2 - z + K T = 0 with a delay of one period.
+    (alternating,) = poles(([1.0], [1.0, 0.0]), ([3.0], [1.0]), 0.5, 0.0).poles
+    assert complex(alternating.s.mid()) == pytest.approx((-np.log(2) + 1j * np.pi) / 0.5, rel=1e-12)
+    assert (alternating.side, alternating.is_pair, float(alternating.size)) == (-1, False, 0.5)
+    (turning,) = poles(([1.0], [1.0, 0.0]), ([1.0], [1.0]), 0.5, 0.5).poles
+    assert complex(turning.z.mid()) == pytest.approx(0.5 + 0.5j, rel=1e-12)
+    assert complex(turning.s.mid()) == pytest.approx(np.log(0.5 + 0.5j) / 0.5, rel=1e-12)
+    assert turning.is_pair and float(turning.size.mid()) == pytest.approx(0.5**0.5)
+
+
 def test_a_pole_on_the_circle_is_exactly_there():
     # A controller that differentiates does not see where an integrator is: z = 1 stays
     found = poles(([1.0], [1.0, 0.0]), ([1.0, -1.0], [1.0, 0.0]), 0.5, 0.0)
