@@ -221,7 +221,7 @@ def response_text(response: EnclosedResponse, notes: Sequence[str] = ()) -> str:
     if response.jumps:
         lines += [f"  jumps by {_short(j.height)} at {_short(j.time)} s" for j in response.jumps[:ROWS]]
         lines += _more(response.jumps)
-    lines += [f"  {note}" for note in notes]
+    lines += [piece for note in notes for piece in broken(f"  {note}")]
     lines += [""] if response.impulses or response.jumps or notes else []
     count = len(response.enclosures)
     step = max(1, -(-(count - 1) // (ROWS - 1)))

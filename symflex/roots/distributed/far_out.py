@@ -43,7 +43,7 @@ NEUTRAL = "delayed terms share the highest power of s and none outweighs the oth
 DELAY_LEADS = f"a delayed term outweighs all others of the highest power of s, so {WITHOUT_END}"
 VANISHES = "the highest power of s may vanish, so poles have no bound"
 EVERY_DELAYED = "no bound on the poles is known when every term is delayed"
-NO_LOSS = "waves without enough damping have poles all along the axis"
+NO_LOSS = "waves without enough damping have poles all along the axis; material damping (eta) decides it"
 
 PHASES = 128  # parts of a turn in which two sums are shown not to vanish together
 
