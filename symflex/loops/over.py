@@ -374,7 +374,8 @@ def _open_parts(
     elif wide:
         ends = sorted(part.ends for part in wide)
         between = f"{float(ends[0][0]):.6g} and {float(ends[-1][1]):.6g}"
-        reasons.append(f"it could not be decided whether poles leave the axis between {between}")
+        what = f"it could not be decided whether poles leave the axis between {between}"
+        reasons.append(f"{what}: a narrower range may decide it")
     return gaps, [*bare, *wide], reasons
 
 
@@ -402,7 +403,8 @@ def _map_of(
 def _counted_up_to(poles: PolesUpTo, parts: Sequence[OpenPart]) -> tuple[list[Interval], list[Ends]]:
     """Return parts that touch as one with the poles in it, and those in which they could not be counted.
 
-    Circles may differ. With a wider one more poles are on the axis; what all parts have there is counted.
+    Circles may differ, and a pole on the axis may pass one: as many are counted there as any part has. With
+    as few as any has, a part with poles on the axis would be stable.
     """
     counted, uncounted = list[Interval](), list[Ends]()
     for circle, row in groupby(parts, key=lambda part: part.circle):
@@ -415,7 +417,7 @@ def _counted_up_to(poles: PolesUpTo, parts: Sequence[OpenPart]) -> tuple[list[In
             if before is None:
                 counted.append((ends, count))
             elif before[1].right == count.right:
-                both = PoleCount(count.right, min(count.axis, before[1].axis))
+                both = PoleCount(count.right, max(count.axis, before[1].axis))
                 counted[-1] = ((before[0][0], ends[1]), both)
             else:  # poles passed the circle
                 uncounted.append((ends[0], ends[0]))

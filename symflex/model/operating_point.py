@@ -47,7 +47,7 @@ from symflex.expressions.nodes import Call, Differentiated
 from symflex.expressions.trigonometric import shorter
 from symflex.model.constants_at_rest import Constants, is_zero
 from symflex.model.declarations import DeclaredParameter
-from symflex.model.model import Assumption, Definition, FoundValue, OperatingPoint, Signal
+from symflex.model.model import IMAGINARY, Assumption, Definition, FoundValue, OperatingPoint, Signal
 from symflex.model.network import AsWritten
 from symflex.model.reading import QuantityLiteral, Reader, literal_value
 from symflex.model.scope import nearest_name
@@ -157,6 +157,8 @@ def linearised(
     written = (x.expression for x in signals)
     note_divisions(reader, constants, (*written, *(at_rest.values.values() if at_rest else ())))
     point = _AboutRest(reader, at_rest or NOWHERE, frozenset(inputs), constants)
+    if at_rest is None and IMAGINARY not in moving:  # coefficients may be complex, values at rest may not
+        point.still.add(IMAGINARY)
     point.check_all_named(moving, equations.values())
     if reader.problems:
         raise SpecError(*reader.problems)
@@ -210,6 +212,7 @@ class _AboutRest:
         constants: Constants,
     ) -> None:
         self.reader, self.rest, self.inputs, self.constants = reader, at_rest, inputs, constants
+        self.still = {LAPLACE, "pi"}
         self.by_value: dict[str, Fraction] = {}
         self.found: tuple[FoundValue, ...] = ()
         self.used: set[str] = set()  # names whose values were used
@@ -263,7 +266,7 @@ class _AboutRest:
         """Tell whether a node is a leaf that varies in time."""
         match node:
             case Name(name):
-                return name not in self.constants.expressions and name not in (LAPLACE, "pi")
+                return name not in self.constants.expressions and name not in self.still
             case Derivative() | Attribute():
                 return True
         return False

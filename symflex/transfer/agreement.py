@@ -16,10 +16,9 @@ from flint import acb, acb_mat
 
 from symflex.algebra import LAPLACE, NO_KERNELS, Dispersion, Factored, PolynomialMemo
 from symflex.balls import Arithmetic, at_centre, current_bits, plan
-from symflex.model.along import varies_along_x
 from symflex.transfer.against_equations import Agreement
 from symflex.transfer.bound import BoundTransferFunction
-from symflex.transfer.direct_solve import GeneratorValues, Point, carried
+from symflex.transfer.direct_solve import GeneratorValues, Point, along_x, carried
 from symflex.transfer.transfer_function import ClosedForm, TransferFunction
 
 
@@ -88,8 +87,8 @@ def _with_kernels(
     }
     kernels = KernelValues(ring.names, table, numbers, ModalSums(ring, NO_KERNELS), PolynomialMemo(plan))
     values = kernels.at(here.s())
-    constants = (tf if isinstance(tf, TransferFunction) else tf.source).constants
-    along = {c.generator: c.expression for c in constants if varies_along_x(c.expression)}
+    source = tf if isinstance(tf, TransferFunction) else tf.source
+    along = along_x(source.model, source.constants)
     matrices: dict[tuple[Dispersion, Factored], acb_mat] = {}
     for kernel in table.kernels:
         law = kernel.dispersion

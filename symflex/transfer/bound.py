@@ -23,7 +23,7 @@ from symflex.budget import spend
 from symflex.equations import radicals_of
 from symflex.expressions import Call
 from symflex.model import ExactValue
-from symflex.model.along import COORDINATE, varies_along_x
+from symflex.model.along import is_tapered, varies_along_x
 from symflex.transfer.double_value import double_value
 from symflex.transfer.enclose import enclosure, later
 
@@ -198,9 +198,9 @@ class BoundTransferFunction:
     @cached_property
     def along(self) -> Mapping[str, Call]:
         """The functions of the coordinate along x among the generators."""
-        names = self.ratio.ring.index
-        if COORDINATE not in names:
+        if not is_tapered(self.source.model):  # then x, if anything, is a parameter
             return {}
+        names = self.ratio.ring.index
         used = ((c.generator, c.expression) for c in self.source.constants if c.generator in names)
         return {name: call for name, call in used if varies_along_x(call)}
 

@@ -15,7 +15,7 @@ Example: a mass m = 2 kg on a spring k = 8 N/m at s = 1 + 1j rad/s, from its one
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -34,11 +34,12 @@ from symflex.balls import (
     series_terms,
 )
 from symflex.budget import spend
-from symflex.equations import Continuum, Equations
+from symflex.equations import ConstantFunction, Continuum, Equations
 from symflex.errors import ModelError
-from symflex.expressions import Call, Expression, fold
+from symflex.expressions import Expression, Name, fold
 from symflex.library.elements import LinearForm, Variable
-from symflex.model.along import COORDINATE, varies_along_x
+from symflex.model import Model
+from symflex.model.along import COORDINATE, is_tapered, varies_along_x
 from symflex.model.linearity import integer_exponent
 from symflex.transfer.enclose import later
 
@@ -130,10 +131,8 @@ class DirectSolve:
         return Solution(quotients, solved.determinant, divisors, values)
 
     @cached_property
-    def _along(self) -> Mapping[str, Call]:
-        """The functions of the coordinate along x."""
-        constants = self.equations.constants
-        return {c.generator: c.expression for c in constants if varies_along_x(c.expression)}
+    def _along(self) -> Mapping[str, Expression]:
+        return along_x(self.equations.model, self.equations.constants)
 
     def _generators(self, point: Point) -> dict[str, acb]:
         """Return the value of every name but those that vary along x."""
@@ -161,9 +160,17 @@ def _delay(name: str, delays: Mapping[str, tuple[Factored, Factored]], number: G
         number.values[name] = (-number(rate) * number(time)).exp()
 
 
-def _holds(value: Factored, names: Mapping[str, Call]) -> bool:
+def along_x(model: Model, constants: Iterable[ConstantFunction]) -> dict[str, Expression]:
+    """Return the coordinate along x and its functions, by the names of their generators."""
+    if not is_tapered(model):  # then x, if anything, is a parameter
+        return {}
+    functions = {c.generator: c.expression for c in constants if varies_along_x(c.expression)}
+    return {COORDINATE: Name(COORDINATE), **functions}
+
+
+def _holds(value: Factored, along: Mapping[str, Expression]) -> bool:
     """Tell whether a value varies along x."""
-    return any(n in value.ring.index and value.depends_on(n) for n in (COORDINATE, *names))
+    return any(n in value.ring.index and value.depends_on(n) for n in along)
 
 
 @dataclass(frozen=True, eq=False)
@@ -215,7 +222,7 @@ class GeneratorValues:
 def _relations(
     part: Continuum,
     number: GeneratorValues,
-    along: Mapping[str, Call],
+    along: Mapping[str, Expression],
     point: Point,
     places: Mapping[Variable, int],
 ) -> list[dict[int, acb]]:
@@ -242,7 +249,7 @@ def carried(
     columns: Sequence[Sequence[Factored]],
     reach: tuple[Factored, Factored],
     number: GeneratorValues,
-    along: Mapping[str, Call],
+    along: Mapping[str, Expression],
     point: Point,
 ) -> acb_mat:
     """Return what takes states over ``reach``, given what each adds to all slopes, ``along`` x or not."""
@@ -266,13 +273,13 @@ class _AlongX:
     """Takes rational functions to their Taylor series along x."""
 
     number: GeneratorValues
-    functions: Mapping[str, Call]
+    functions: Mapping[str, Expression]
     point: Point
 
     def series(self, value: Factored, x: acb) -> list[acb]:
         """Return the coefficients about a point, as many as ``current_terms()``."""
         along = acb_series([x, 1])
-        known: dict[str, acb_series] = {COORDINATE: along}
+        known: dict[str, acb_series] = {}
 
         def named(name: str) -> acb | acb_series:
             if name in self.functions:
@@ -282,14 +289,14 @@ class _AlongX:
         expansion = evaluated(value, named, acb_series([1]))
         return [expansion[i] for i in range(current_terms())]
 
-    def _function(self, call: Call, along: acb_series) -> acb_series:
+    def _function(self, function: Expression, along: acb_series) -> acb_series:
         def named(name: str) -> acb_series:
             if name == COORDINATE:
                 return along
             return acb_series([arb.pi() if name == "pi" else self.point.parameters[name]()])
 
         series: acb_series = fold(
-            call,
+            function,
             number=lambda x: acb_series([ball(x)]),
             name=named,
             power=_power,

@@ -44,7 +44,7 @@ from symflex.budget import spend
 from symflex.expressions import Call, Expression
 from symflex.loops import pick_gain
 from symflex.model import ExactValue, Model, ModelParameter, with_numbers
-from symflex.model.along import COORDINATE, varies_along_x
+from symflex.model.along import COORDINATE, is_tapered, varies_along_x
 from symflex.model.brackets import slope_along_x
 from symflex.model.loss_factors import check_causal
 from symflex.roots import PoleZeroMap, Root
@@ -530,7 +530,7 @@ class Tangents:
     @cached_property
     def _functions(self) -> Mapping[str, Call]:
         """The functions of the coordinate along x among the generators."""
-        if COORDINATE not in self.tf.ratio.ring.index:
+        if not is_tapered(self.tf.model):
             return {}
         used = (c for c in self.tf.constants if c.generator in self._used)
         return {c.generator: c.expression for c in used if varies_along_x(c.expression)}

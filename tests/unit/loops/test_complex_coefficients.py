@@ -17,6 +17,7 @@ WRITTEN = (
     ("m*s^2*z + c_e*s*z + c_i*(s - j*W)*z + k*z = F", NATURAL),
     ("k*z = F + j*c_i*W*z - s*(c_i + c_e)*z - s^2*m*z", NATURAL),
     ("m*s^2*z + (c_i + c_e)*s*z + c_i*W*z/j + k*z = F", NATURAL),
+    ("m*z'' + c_e*z' + c_i*(z' - j*W*z) + k*z = F", NATURAL),
     ("m*(s + j*W)^2*z + c_e*(s + W*j)*z + c_i*s*z + k*z = F", NATURAL - ONSET),
     ("m*(s^2 - 2*W*s/j - W^2)*z + c_e*s*z + c_e*j*W*z + c_i*s*z + k*z = F", NATURAL - ONSET),
 )

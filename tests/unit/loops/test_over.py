@@ -224,6 +224,15 @@ def test_a_pole_that_stays_on_the_axis_is_marginal_and_boxes_leave_it_open() -> 
     assert not halved.stable
 
 
+def test_a_parameter_may_be_called_x_as_the_coordinate_is() -> None:
+    # 1/(s + 1)^3 is stable up to the gain 8.
+    loop = {"y": "exp(x)/(s + 1)^3*(r - y)"}
+    values = {"x": {"value": 1, "assume": "real"}}
+    model = Model(parameters=values, signals=loop, inputs={"r": {}}, outputs={"Y": "y"})
+    found = model.stability(over="x", limits=(-3, 4))
+    assert [float(b.gain) for b in found.boundaries] == [pytest.approx(3 * np.log(2), rel=1e-14)]
+
+
 def test_two_undamped_modes_meet_where_their_coupling_changes_its_sign() -> None:
     """``(w - 2)(w - 3) - (1 - mu)`` with w = -s^2 has a double root where ``1 + 4 (1 - mu) = 0``."""
     flutter = loads(

@@ -156,6 +156,13 @@ def test_a_column_under_a_dead_load_buckles_at_a_quarter_of_pi_squared():
     assert [(i.poles.right, i.poles.axis) for i in found.proved.intervals] == [(0, 2), (1, 0)]
 
 
+def test_a_part_in_which_a_pole_comes_below_the_frequency_is_marginal():
+    # Its first mode has the frequency 1.8751040687^2/sqrt(m): 1.5 rad/s at m = 5.49.
+    bar = loads(DEAD.replace(" + P*w''", "").replace(" + P*w'(L)", ""))
+    found = bar.stability(over="m", limits=(4, 7), up_to_hz=1.5 / (2 * pi))
+    assert [each.poles.word for each in found.proved.intervals] == ["marginal"]
+
+
 def test_a_belt_that_moves_buckles_where_its_stiffness_is_spent():
     # rho v^2 = N + EI pi^2/l^2. Its poles are on the axis below, as waves turn round with s.
     found = loads(BELT).stability(over="v", limits=(3.2, 3.4), up_to_hz=1, digits=10)

@@ -583,3 +583,23 @@ two = { type = "string", between = ["b", "ground"], N = "N", rhoA = "mu", l = "l
     unit = float(mp.pi * mp.sqrt(90 / mp.mpf("0.5")) / 1.5)
     assert [float(h.root.im.mid()) / unit for h in found.hidden if h.root.im > 0] == pytest.approx([3])
     assert sorted(float(r.im.mid()) / unit for r in found.poles if r.im > 0) == pytest.approx([1, 2, 4, 5])
+
+
+@pytest.mark.parametrize("mass", ["x", "exp(x)"])
+def test_a_parameter_called_x_does_not_vary_along_a_field(mass):
+    text = f"""
+symflex = 1
+parameters = {{ x = 0.25 }}
+inputs = {{ F = {{}} }}
+outputs = {{ Y = "w(1)" }}
+[fields.w]
+domain = ["0", "1"]
+equation = "w'''' + {mass}*s^2*w = 0"
+conditions = ["w(0) = 0", "w'(0) = 0", "w''(1) = 0", "w'''(1) = -F"]
+"""
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    value = 0.25 if mass == "x" else mp.exp(mp.mpf(0.25))
+    q = mp.sqrt(mp.sqrt(value) * 1j * mp.mpf(3))  # of s = 3: q^4 = -value*9, of a cantilever in books
+    expected = (mp.cosh(q) * mp.sin(q) - mp.sinh(q) * mp.cos(q)) / (q**3 * (mp.cosh(q) * mp.cos(q) + 1))
+    found = pipeline.bind(tf)(3 + 0j)
+    assert abs(found - complex(expected)) < 1e-12 * abs(expected)
