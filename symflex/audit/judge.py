@@ -187,7 +187,10 @@ def _taken(reading: FormulaReading, tf: TransferFunction) -> str:
     absent = [p.name for p in tf.parameters if p.name not in printed]
     if not absent or form.where:
         return ""
+    units = {p.name: p.unit for p in tf.parameters}
     for value in (0, 1):
+        if value and any(units[name] for name in absent):
+            continue  # one newton is no natural value
         given = dict.fromkeys(absent, number(value))
         try:
             meant = reading.value(substitute(quotient(form.num, form.den), given))

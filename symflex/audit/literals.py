@@ -73,6 +73,7 @@ LATE: Final = 20  # units of the last digit by which an entry is off that was co
 DIGITS: Final = "0123456789"
 FINER: Final = 2  # digits that another number may have more than the written one
 LISTED: Final = 2  # digits that it takes to say which factor, digit or exchange a slip is
+SHORT: Final = 24  # characters of a text that is shown whole
 PROBE: Final = 1e-2  # first step of the solve, as a logarithm
 STRIDE: Final = 2.5  # longest step
 STEPS: Final = 12
@@ -98,7 +99,17 @@ class WrittenNumber:
 
     def with_number(self, text: str) -> str:
         """Return the string with another number."""
-        return self.whole[: self.start] + text + self.whole[self.start + len(self.text) :]
+        after = self.whole[self.start + len(self.text) :]
+        return (
+            self.whole[: self.start - 1] + after
+            if self.is_divisor and text == "1"
+            else self.whole[: self.start] + text + after
+        )
+
+    @property
+    def is_divisor(self) -> bool:
+        """Whether a slash stands in front of it."""
+        return self.whole[: self.start].endswith("/")
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,6 +119,40 @@ class Refit:
     said: str
     text: str  # the number
     digits: int  # how many digits of evidence it takes to choose it
+
+
+def named(path: str) -> str:
+    """Return what a path is called in a sentence: ``a condition of w`` for ``conditions of w``."""
+    word, _, rest = path.partition(" ")
+    one = {"conditions": "a condition", "equations": "an equation", "equation": "the equation"}.get(
+        word, word
+    )
+    return f"{one} {rest}".rstrip()
+
+
+def other_text(path: str, new: str, old: str) -> str:
+    """Return in words that a text would be another one; of a long text only what differs.
+
+    >>> other_text("k of spring", "14.7 kN/m", "17.4 kN/m")
+    'k of spring is 14.7 kN/m, not 17.4 kN/m'
+    >>> other_text("equations", "3*s^2*x + 540*x + b*s*x = F", "3*s^2*x + 450*x + b*s*x = F")
+    'an equation has 540*x in place of 450*x: 3*s^2*x + 450*x + b*s*x = F'
+    """
+    if max(len(new), len(old)) <= SHORT:
+        return f"{named(path)} is {new}, not {old}"
+    terms = [re.findall(r"(?:\([^()]*\)|[^\s()])+|\S", text) for text in (new, old)]
+    begin = next((i for i, (a, b) in enumerate(zip(*terms, strict=False)) if a != b), min(map(len, terms)))
+    end = next(
+        (i for i, (a, b) in enumerate(zip(*map(reversed, terms), strict=False)) if a != b),
+        min(map(len, terms)),
+    )
+    end = min(end, *(len(each) - begin for each in terms))
+    said, had = (" ".join(each[begin : len(each) - end]) for each in terms)
+    if not said:
+        return f"{named(path)} lacks {had}: {old}"
+    return (
+        f"{named(path)} has {said} in place of {had}: {old}" if had else f"{named(path)} is {new}, not {old}"
+    )
 
 
 def written(path: str, value: Value | None) -> Iterator[tuple[str, StringValue | NumberValue]]:
@@ -173,7 +218,7 @@ def refits(
             factor = sqrt(factor) if is_root and factor > 0 else factor
             if abs(factor / times - 1) <= width:
                 text = f"{Decimal(repr(number * factor)):f}"
-                yield Refit(f"{literal.path} is {said} its value", text, LISTED)
+                yield Refit(f"{named(literal.path)} is {said} the declared value", text, LISTED)
     right = Fraction(number * times)
     if one := respelled(literal.text, right):
         yield _typed(literal, one[1], LISTED)
@@ -185,7 +230,7 @@ def refits(
 
 
 def _typed(literal: WrittenNumber, text: str, digits: int) -> Refit:
-    return Refit(f"{literal.path} is {literal.with_number(text)} and not {literal.whole}", text, digits)
+    return Refit(other_text(literal.path, literal.with_number(text), literal.whole), text, digits)
 
 
 def _gap(value: float | None, target: float) -> float:

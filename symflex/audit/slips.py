@@ -31,6 +31,7 @@ from symflex.audit.literals import (
     SECTIONS,
     WrittenNumber,
     literals_of,
+    other_text,
     refits,
     respelled,
     written,
@@ -77,7 +78,7 @@ MOST_OF_ONE: Final = 40  # changes of one expression
 ENOUGH_DIGITS: Final = 6  # printed digits of wrong entries in all, below which a match says little
 MARGIN: Final = 3  # digits of evidence beyond those of a number that is no slip of the pen
 SHOWN: Final = 3  # explanations that are named
-SUPPORTS: Final = ("fixed", "pin", "slider")
+SUPPORTS: Final = {"fixed": "fixed", "pin": "a pin", "slider": "a slider"}
 EXPONENTS: Final = (1, 2, 3, 4)
 ORDERS: Final = (0, 1, 2, 3)  # of derivatives in conditions
 FEWEST: Final = 2  # entries that share a factor
@@ -111,7 +112,7 @@ def explained(found: TableAudit, model: Model, source: Source, load: Callable[[S
         return found
     if pen := _pen(found):
         return replace(found, slip=pen)
-    said = [factor] if (factor := _common_factor(found)) else []
+    factor = _common_factor(found)
     text = _Text(found, source, load)
     fitting: list[_Change] = []
     if sum(significant(e.printed) for e in _wrong(found) if e.printed) >= ENOUGH_DIGITS:
@@ -126,9 +127,11 @@ def explained(found: TableAudit, model: Model, source: Source, load: Callable[[S
                 if sum(each.digits <= LISTED for each in fitting) == SHOWN:
                     break
     least = min((each.digits for each in fitting), default=0)
-    said += [each.said for each in fitting if each.digits <= max(least, LISTED)][:SHOWN]
-    which = "the entry is" if found.count == 1 else f"all {found.count} entries are"
-    return replace(found, slip="; or ".join(said) + (f": with this {which} right" if said else ""))
+    said = list(dict.fromkeys(each.said for each in fitting if each.digits <= max(least, LISTED)))[:SHOWN]
+    which = {1: "the entry is", 2: "both entries are"}.get(found.count, f"all {found.count} entries are")
+    if factor and said:
+        return replace(found, slip=f"{factor}; or {which} right if {', or if '.join(said)}")
+    return replace(found, slip=factor or (f"{which} right if {', or if '.join(said)}" if said else ""))
 
 
 def explained_by_print(found: TableAudit) -> TableAudit:
@@ -236,7 +239,7 @@ def _of_values(model: Model, table: PrintedTable) -> Iterator[_Change]:
             exchange = partial(_exchanged, one=one, other=other)
             yield _Change(f"{one} and {other} are exchanged", partial(changed, exchange))
     for name, value in known.items():
-        for said, factor in ((f"{name} is minus its value", -1), (f"{name} is left out", 0)):
+        for said, factor in ((f"{name} is minus the declared value", -1), (f"{name} is left out", 0)):
             if value.rational:
                 yield _Change(said, partial(changed, partial(_times, name=name, factor=factor)))
 
@@ -322,7 +325,7 @@ class _Text:
             named, span = kind.value.text.value, kind.value.text.span
             for other in SUPPORTS if named in SUPPORTS else ():
                 if other != named:
-                    said = f"{entry.key} is a {other} and no {named}"
+                    said = f"{entry.key} is {SUPPORTS[other]}, not {SUPPORTS[named]}"
                     yield self.changed(said, (span.start, span.end, other))
             whole = entry.key_span.start, entry.value.span.end, ""
             yield self.changed(f"{entry.key} ({named}) is left out", whole)
@@ -331,7 +334,7 @@ class _Text:
                 if isinstance(value, StringValue):
                     place, old = value.text.span, value.text.value
                     for new in islice(_rewritten(value), MOST_OF_ONE):
-                        yield self.changed(f"{path} is {new} and not {old}", (place.start, place.end, new))
+                        yield self.changed(other_text(path, new, old), (place.start, place.end, new))
 
 
 def _edit(literal: WrittenNumber, number: str) -> tuple[int, int, str]:

@@ -39,8 +39,8 @@ def test_numbers_are_found_wherever_they_are_written():
 
 def test_a_factor_and_exchanged_digits_are_said():
     # sqrt(52/3) = 4.16333, with 3 kg on k.
-    assert ("k is twice its value", 2) in offered("26 N/m", "4.1633", lambda k: sqrt(k / 3))
-    assert ("k is 62 N/m and not 26 N/m", 2) in offered("26 N/m", "4.5461", lambda k: sqrt(k / 3))
+    assert ("k is twice the declared value", 2) in offered("26 N/m", "4.1633", lambda k: sqrt(k / 3))
+    assert ("k is 62 N/m, not 26 N/m", 2) in offered("26 N/m", "4.5461", lambda k: sqrt(k / 3))
 
 
 def test_a_number_without_influence_or_without_value_is_left_alone():
