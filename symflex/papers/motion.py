@@ -34,7 +34,7 @@ from symflex.expressions import (
     substitute,
 )
 from symflex.papers.formula import defined_symbol, read_value
-from symflex.papers.laplace_equations import Signals, degree, is_ratio, signals_in, terms_of
+from symflex.papers.laplace import Signals, degree, is_ratio, signals_in, terms_of
 from symflex.papers.matrices import Matrix, Value
 from symflex.papers.matrix_equations import NamedMatrices
 from symflex.papers.reader import FRACTIONS
