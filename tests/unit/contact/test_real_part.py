@@ -79,3 +79,23 @@ def test_no_band_reaches_into_frequencies_that_are_open():
     bands = [(float(b.low.mid()), float(b.high.mid())) for b in found.active]
     assert bands == [pytest.approx((1, 2)), pytest.approx((4, 10))]
     assert found.reasons == ("the real part between 0.31831 and 0.63662 Hz",)
+
+
+@pytest.mark.parametrize(
+    ("formula", "omega", "exact"),
+    [
+        ("1 + 40*exp(-s/20)/s", 0, -1),  # 1 - 40 sin(omega/20)/omega
+        ("1 - 3*exp(-s)/(1 + s/2)^2", 0, -2),
+        # numpy on a grid of 1e-9 rad/s about 0.7282906
+        ("1 - 3*exp(-s)*(1 + 2*s)/(1 + s/2)^2", 0.7282906, -3.19845421044828),
+    ],
+)
+def test_the_least_part_of_a_band_from_0_on_is_at_its_end_or_inside(formula, omega, exact):
+    function = bound(formula)
+    active = real_part(function, 12).active
+    least = least_part(function, active, 12)
+    assert active[0].low == 0
+    assert abs(float(least.value.mid()) - exact) < 1e-12 and least.value.rad() < 1e-12
+    assert abs(float(least.omega.mid()) - omega) < 1e-6
+    if not omega:
+        assert least.value.contains(exact) and least.omega.contains(0)

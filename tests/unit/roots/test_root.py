@@ -154,3 +154,21 @@ def test_the_callers_precision_does_not_change_the_result():
         with precision(bits):
             roots = find_polynomial_roots(problem_of(polynomial), 60)
             assert [root.decimal(60) for root in roots] == wanted
+
+
+def test_images_are_in_the_axes_in_which_roots_mirror_each_other():
+    def images(at, **symmetry):
+        re, im = at
+        root = Root(arb(re), arb(im), 1, on_imaginary_axis=re == 0, is_real=im == 0)
+        return [(float(r.re), float(r.im)) for r in mirror_images([root], **symmetry)]
+
+    for at, even, real, expected in (
+        ((-3, 4), False, True, [(-3, 4), (-3, -4)]),
+        ((-3, 4), False, False, [(-3, 4)]),
+        ((-3, 4), True, False, [(-3, 4), (3, -4)]),
+        ((-3, 0), True, True, [(-3, 0), (3, 0)]),
+        ((0, 4), True, True, [(0, 4), (0, -4)]),
+        ((0, 4), True, False, [(0, 4)]),
+        ((0, 0), True, True, [(0, 0)]),
+    ):
+        assert images(at, even=even, real=real) == expected

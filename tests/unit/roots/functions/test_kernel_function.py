@@ -1,16 +1,17 @@
 """Functions with kernels against closed forms: values, slopes, turns, symmetry, and how fast they turn."""
 
 from functools import cache
+from types import SimpleNamespace
 
 import mpmath
 import pytest
 from flint import acb, arb
 from mpmath import mp, mpc
 
-from symflex.algebra import Factored
+from symflex.algebra import Factored, Ring
 from symflex.balls import precision
 from symflex.errors import ModelError, UncertifiedError
-from symflex.roots.functions.kernel_function import KernelFunction
+from symflex.roots.functions.kernel_function import KernelFunction, divisors_in_s
 from tests.unit.roots.distributed_models import DELAY_LOOP, FREE, ON_A_FOUNDATION, ROD, SLIDING_FREE, bound
 
 BITS = 160
@@ -150,3 +151,11 @@ def test_what_is_0_everywhere_or_depends_on_the_branch_of_a_wavenumber_is_no_fun
         (diagnostic,) = failed.value.diagnostics
         assert diagnostic.code == "SF404"
         assert diagnostic.message == f"a part of {source.name} has no value of its own for every s"
+
+
+def test_what_coefficients_are_divided_by_is_what_depends_on_s_below():
+    # c (s + 2)/(s + 1)^2 and 1/c: of these 1/(s + 1)^2 alone.
+    ring = Ring(("s", "c"))
+    s, c = (Factored.generator(ring, name) for name in ring.names)
+    law = SimpleNamespace(matrix=((c * (s + 2) / (s + 1) ** 2, 1 / c), (s, 1 / (s * c))))
+    assert [str(f.factors) for f in divisors_in_s(law)] == [str((1 / x).factors) for x in ((s + 1) ** 2, s)]
