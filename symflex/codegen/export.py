@@ -232,8 +232,10 @@ class Outline:
         )
         return [self.disarmed(member.headline), "", *map(self.disarmed, lines), ""]
 
-    def verified(self, member: Member, end: str = "") -> list[str]:
-        """Return how accurate a function is."""
+    def verified(self, member: Member | MatrixMember, end: str = "") -> list[str]:
+        """Return how accurate a function is; nothing of a matrix without a program of its own."""
+        if member.verification is None:
+            return []
         return wrapped(self.disarmed(inert(f"{member.verification.text()}{end}")), self.room)
 
     def arguments(self, parameters: Iterable[ModelParameter], names: Mapping[str, str]) -> list[str]:

@@ -43,10 +43,16 @@ class InfixPrinter(ABC):
     item: ClassVar[str] = "{}[{}]"
     called: ClassVar[str] = "_{}({})"
     first: ClassVar[int] = 0  # position of the first value of a list
+    together: ClassVar[str] = "{}"  # of values that a function returns at once
 
     def print(self, node: tree.CodeNode) -> str:
         """Return the text of an expression."""
         return self._print(node)[0]
+
+    def all_of(self, values: Sequence[tree.CodeNode]) -> str:
+        """Return the text of what a function returns: one value, or all of them at once."""
+        texts = [self.print(value) for value in values]
+        return texts[0] if len(texts) == 1 else self.together.format(", ".join(texts))
 
     def quotient(self, numerator: tree.CodeNode, denominator: tree.CodeNode) -> str:
         """Return the text of a quotient."""
@@ -193,6 +199,10 @@ class PrivateFunctions(ABC):
             return [self._lumped(self.program)]
         pieces = (block for i, piece in enumerate(self.program.code) for block in self._piece(i, piece))
         return [self._choice(self.program), *pieces]
+
+    def entries(self) -> str:
+        """Return the function of all values at once, of the program of a matrix."""
+        return self._lumped(self.program)
 
     @abstractmethod
     def _lumped(self, program: tree.Piecewise) -> str:

@@ -23,6 +23,7 @@ from symflex.codegen.export import (
     Contents,
     Export,
     Language,
+    MatrixMember,
     Member,
     Outline,
     called_parts,
@@ -319,6 +320,9 @@ class PairBody:
             self.say(f"into[{i}] = {_text(x)};")
 
 
+ENTRIES = "values"  # what private functions of a whole matrix are called
+
+
 @dataclass(frozen=True)
 class PairFunctions:
     """Prints the private functions of one transfer function: its value, and the parts of its quotient."""
@@ -332,10 +336,10 @@ class PairFunctions:
         """Identifiers of the parameters, in declared order."""
         return [self.parameters[p] for p in self.program.parameters]
 
-    def blocks(self) -> list[str]:
-        """Return the functions, each as text that ends with a line end."""
+    def blocks(self, *kinds: str) -> list[str]:
+        """Return the functions, by default of value and parts, each as text that ends with a line end."""
         blocks: list[str] = []
-        for kind in ("value", "parts"):
+        for kind in kinds or ("value", "parts"):
             for number, piece in enumerate(self.program.code):
                 blocks += self._piece(kind, number, piece)
             blocks.append(self._choice(kind))
@@ -358,12 +362,13 @@ class PairFunctions:
 
     def _piece(self, kind: str, number: int, piece: tree.CodePiece) -> list[str]:
         """Return what computes a piece: the value, or numerator and denominator with their derivatives."""
-        code, name = _quotient_of(piece.code), f"{kind}_{number}_of_{self.name}"
+        name = f"{kind}_{number}_of_{self.name}"
+        code = piece.code if kind == ENTRIES else _quotient_of(piece.code)
         outer = self._body()
         if kind == "parts":
             code = differentiated(code)
         elif not piece.circle:
-            code = piece.code
+            code = piece.code  # of a matrix, with the values of all entries
         outer.assign(code.constants)
         inner = outer.within(2)
         inner.assign(code.assignments)
@@ -388,7 +393,7 @@ class PairFunctions:
 
     def _choice(self, kind: str) -> str:
         """Return the function that finds the piece that serves."""
-        program, into = self.program, ", into" * (kind == "parts")
+        program, into = self.program, ", into" * (kind != "value")
         outer = self._body()
         served = {k: [n for n, piece in enumerate(program.pieces) if piece == k] for k in set(program.pieces)}
         for k in sorted(served):
@@ -447,11 +452,8 @@ def javascript_module(contents: Contents) -> Export:
         code += "\n".join(private)
     if contents.matrix is not None:
         (whole,) = identifiers({"": MATRIX}, {*RESERVED, *public.values()}).values()
-        calls = ([f"{public[m.key]}(s, values)" for m in row] for row in contents.matrix.rows)
-        said = [contents.matrix.headline, "", "@returns {Array} rows of values, each as of its function"]
-        lines = [line for row in calls for line in statement_lines(f"[{', '.join(row)}],", WIDTH, "    ")]
-        head = f"export const {whole} = (s, values = {{}}) => ["
-        blocks.append("\n".join([*comment(said), head, *lines, "];", ""]))
+        blocks.append(_matrix(contents.matrix, whole, public, parameters))
+        code += blocks[-1]
     blocks += called_parts(code, PARTS, ["imaginary", "offered"])
     rows = JAVASCRIPT_OUTLINE.function_rows({m.tf.name: public[m.key] for m in members})
     table = ["export const TRANSFER_FUNCTIONS = Object.freeze({", *rows, "});", ""]
@@ -512,8 +514,26 @@ def _public(member: Member, functions: PairFunctions) -> str:
     return "\n".join([*comment(lines), *call, ""])
 
 
+def _matrix(matrix: MatrixMember, name: str, public: Mapping[str, str], parameters: Mapping[str, str]) -> str:
+    """Return the function of all entries, which calls those of single entries, or its own."""
+    said = [matrix.headline, "", *JAVASCRIPT_OUTLINE.verified(matrix, ".")]
+    said.append("@returns {Array} rows of values, each as of its function")
+    head = f"export const {name} = (s, values = {{}}) =>"
+    if matrix.program is not None:
+        rows, columns = matrix.shape
+        functions = PairFunctions(matrix.program, name, parameters)
+        used = f"[{', '.join(map(string, functions.used))}]"
+        call = f"entries(s, values, {ENTRIES}_of_{name}, {used}, {rows}, {columns});"
+        own = functions.blocks(ENTRIES)
+        return "\n".join([*own, *comment(said), head, *statement_lines(call, WIDTH, "    "), ""])
+    calls = ([f"{public[m.key]}(s, values)" for m in row] for row in matrix.rows)
+    lines = [line for row in calls for line in statement_lines(f"[{', '.join(row)}],", WIDTH, "    ")]
+    return "\n".join([*comment(said), f"{head} [", *lines, "];", ""])
+
+
 JAVASCRIPT = Language(
     ".js",
     "ES module without dependencies, with numerators and denominators, verified likewise",
     javascript_module,
+    shares=True,
 )

@@ -50,6 +50,7 @@ class JuliaPrinter(InfixPrinter):
     power: ClassVar = "{}^{}"
     cut_off: ClassVar = "ifelse(abs({z}) <= {end!r}, {z}, NaN * {z})"
     first: ClassVar = 1
+    together: ClassVar = "({})"
 
     def complex_number(self, real: float, imaginary: float) -> str:
         """Return a number as text that needs no parentheses."""
@@ -97,10 +98,10 @@ class JuliaFunctions(PrivateFunctions):
             body = [
                 *self.statement(inverse, one, 2),
                 *self.assigned(late, printer, 2),
-                *self.statement("return", printer.print(far.values[0]), 2),
+                *self.statement("return", printer.all_of(far.values), 2),
             ]
             lines += [f"    if abs({s}) > {program.limit!r}", *body, "    end"]
-        return self._function("value", s, [*lines, *self.statement("return", printer.print(near.values[0]))])
+        return self._function("value", s, [*lines, *self.statement("return", printer.all_of(near.values))])
 
     def _choice(self, program: Piecewise) -> str:
         """Return the function that finds the piece that serves."""
@@ -119,8 +120,8 @@ class JuliaFunctions(PrivateFunctions):
         printer, (s,) = self.scope(piece.code.every, "s")
         lines = self.assigned(piece.code.every, printer)
         if piece.circle:
-            values = f"({', '.join(printer.print(v) for v in piece.code.values)})"
-            parts = self._function(f"parts_{number}", s, [*lines, *self.statement("return", values)])
+            values = self.statement("return", printer.all_of(piece.code.values))
+            parts = self._function(f"parts_{number}", s, [*lines, *values])
             _, (s, z) = self.scope((), "s", "z")
             parts_of_z = f"{z} -> {self._call(f'parts_{number}', z)}"
             mean = self.statement("return", f"_mean_over_circle({parts_of_z}, {s}, {piece.circle})")
@@ -151,6 +152,10 @@ def julia_module(contents: Contents) -> Export:
     if contents.matrix is not None:
         (whole,) = identifiers({"": MATRIX}, taken).values()
         blocks.append(_matrix(contents.matrix, whole, public, parameters))
+        if contents.matrix.program is not None:
+            functions = JuliaFunctions(contents.matrix.program, whole, parameters, taken - {"s"})
+            blocks.append(functions.entries())
+            code += blocks[-1]
         public = {**public, "": whole}
     blocks += called_parts(code, parts_of("julia.jl"))
     for name, is_response in (("TRANSFER_FUNCTIONS", False), ("FREQUENCY_RESPONSES", True)):
@@ -173,23 +178,29 @@ def julia_module(contents: Contents) -> Export:
 
 
 def _matrix(matrix: MatrixMember, name: str, public: Mapping[str, str], parameters: Mapping[str, str]) -> str:
-    """Return the function that calls those of all entries."""
+    """Return the function of all entries, which calls those of single entries, or its own."""
     rows, columns = matrix.shape
     signature = []
     for p in matrix.parameters:
         default = default_value(p)
         signature.append(f"{parameters[p.name]}::Number{f' = {default}' if default else ''}")
     lines = [f"    {name}(s{'; ...' if signature else ''})", "", _disarmed(matrix.headline), ""]
-    lines.append("Parameters are those of its functions.")
+    lines += ["Parameters are those of its functions.", *JULIA_OUTLINE.verified(matrix, ".")]
     head = [f"function {name}(s::Number;", *(f"    {x}," for x in signature), ")"]
     if not signature:
         head = [f"function {name}(s::Number)"]
     body = ["    values = ["]
-    for member in matrix.each:
+    for member in matrix.each if matrix.program is None else ():
         given = "; " * bool(member.parameters)
         given += ", ".join(f"{parameters[p.name]} = {parameters[p.name]}" for p in member.parameters)
         body.append(f"        {public[member.key]}(s{given}),")
-    body += ["    ]", f"    return permutedims(reshape(values, {columns}, {rows}))", "end", ""]
+    body.append("    ]")
+    if matrix.program is not None:
+        own = ["complex(float(s))", *(f"float({parameters[p]})" for p in matrix.program.parameters)]
+        call = f"_value_of_{name}({', '.join(own)})"
+        body = in_lines(f"values = [complex(x) for x in {call}]", WIDTH - 8)
+        body = [f"    {'    ' * bool(i)}{line}" for i, line in enumerate(body)]
+    body += [f"    return permutedims(reshape(values, {columns}, {rows}))", "end", ""]
     return "\n".join([*_docstring(lines), *head, *body])
 
 
@@ -268,4 +279,9 @@ def _public(member: Member, functions: JuliaFunctions, of_s: str) -> str:
     return "\n".join([*_docstring(lines), *first, body, "end", ""])
 
 
-JULIA = Language(".jl", "Julia module, one function per transfer function, verified likewise", julia_module)
+JULIA = Language(
+    ".jl",
+    "Julia module, one function per transfer function, verified likewise",
+    julia_module,
+    shares=True,
+)

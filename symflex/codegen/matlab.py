@@ -90,6 +90,7 @@ class MatlabPrinter(InfixPrinter):
     item: ClassVar = "{}{{{}}}"
     called: ClassVar = "{}({})"
     first: ClassVar = 1
+    together: ClassVar = "{{{}}}"
 
     def to_complex(self, operand: CodeNode) -> tuple[str, int]:
         """Return the number itself: a square root needs no complex operand to be complex."""
@@ -145,17 +146,20 @@ class LocalFunctions(PrivateFunctions):
         near, far, late = program.near, program.far, program.late
         words = ("s", "value", "limit", "is_far", "far_value", "inverse")[: 2 if far is None else 6]
         printer, (s, value, *others) = self.scope((*near.every, *late), *words)
-        lines = [*self.assigned(near.every, printer), *self.statement(value, printer.print(near.values[0]))]
+        lines = [*self.assigned(near.every, printer), *self.statement(value, printer.all_of(near.values))]
         if far is not None:
             limit, is_far, far_value, inverse = others
+            chosen = self.statement(f"{value}({is_far})", f"{far_value}({is_far})", 2)
+            if len(far.values) > 1:
+                chosen = self.statement(value, f"replaced({value}, {far_value}, {is_far})", 2)
             lines += [
                 *self.statement(limit, repr(program.limit)),
                 *self.statement(is_far, f"abs({s}) > {limit}"),
                 f"  if any({is_far})",
                 *self.statement(inverse, f"1.0 ./ {s}", 2),
                 *self.assigned(late, printer, 2),
-                *self.statement(far_value, printer.print(far.values[0]), 2),
-                *self.statement(f"{value}({is_far})", f"{far_value}({is_far})", 2),
+                *self.statement(far_value, printer.all_of(far.values), 2),
+                *chosen,
                 "  end",
             ]
         return self._function(value, "value", s, lines)
@@ -262,18 +266,27 @@ class _File:
         return identifiers({"": MATRIX}, self.taken, LONGEST)[""]
 
     def _matrix(self, matrix: MatrixMember) -> str:
-        """Return the function that calls those of all entries."""
+        """Return the function of all entries, which calls those of single entries, or its own."""
         rows, columns = matrix.shape
         said = [
             _disarmed(matrix.headline),
             f"Of size [{rows} {columns} numel(s)] for a vector s, else [{rows} {columns} size(s)].",
+            *OUTLINE.verified(matrix, "."),
         ]
+        head = f"function value = {self.whole}(s, varargin)"
+        first = f"{self.whole.upper()}  {said[0]}"
+        if matrix.program is not None:
+            own = identifiers({"": f"{self.whole}_value"}, {*self.taken, self.whole}, LONGEST)[""]
+            taken = {*self.taken, self.whole, own} - WORDS
+            local = LocalFunctions(matrix.program, self.whole, self.parameters, taken, {"value": own})
+            given = _given(self.parameters[p] for p in matrix.program.parameters)
+            called = local.statement("value", f"entries(@{own}, s, given, [{rows}, {columns}])")
+            whole = _function(head, *_helped(first, said[1:]), *given, *called)
+            return "\n".join([whole, local.entries()])
         lines = [f"  parts = cell({rows}, {columns});"]
         for i, row in enumerate(matrix.rows, 1):
             for j, m in enumerate(row, 1):
                 lines += continued(f"parts{{{i}, {j}}} = {self.public[m.key]}(s, varargin{{:}});", "  ")
-        head = f"function value = {self.whole}(s, varargin)"
-        first = f"{self.whole.upper()}  {said[0]}"
         return _function(head, *_helped(first, said[1:]), *lines, "  value = stacked(parts);")
 
     def _roles(self, member: Member) -> list[str]:
@@ -306,6 +319,7 @@ class _File:
         always = ["numbers", "columns", *(["system_of"] if self.systems else [])]
         if self.matrix is not None:
             blocks.append(self._matrix(self.matrix))
+            code += blocks[-1]
             always.append("stacked")
         blocks += called_parts(code, PARTS, always)
         shown = inert(self.stem[:LONGEST_STEM])
@@ -455,6 +469,7 @@ MATLAB = Language(
     ".m",
     "MATLAB and Octave function file, a handle per transfer function, verified likewise",
     lambda contents: _File(contents).made(),
+    shares=True,
 )
 
 

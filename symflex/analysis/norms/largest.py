@@ -30,6 +30,7 @@ SQUARINGS = 23  # of a matrix, whose trace is its largest eigenvalue's power the
 NEAR = 1e-6  # relative half width of a piece at a pole's frequency, where a large value is met first
 NODES = 6  # on each side of the middle of a piece
 FURTHER, STEP = 40, 2.0  # frequencies from which on a bound is tried
+NOTHING = arb(0)
 MOST_TURNS = 200  # of entries against each other by delays up to such a frequency
 
 
@@ -123,14 +124,14 @@ class _NormPiece:
 
 
 class _NormSearch:
-    def __init__(self, matrix: MatrixOnAxis, width: float) -> None:
-        self.matrix, self.width = matrix, width
+    def __init__(self, matrix: MatrixOnAxis, width: float, floor: arb) -> None:
+        self.matrix, self.width, self.floor = matrix, width, floor
         self.best, self.omega = arb(0), 0.0
         self.near: list[_NormPiece] = []  # all that may contain it
 
     @property
     def level(self) -> arb:
-        return (self.best * (1 + arb(self.width))).upper()
+        return (self.best * (1 + arb(self.width))).max(self.floor).upper()
 
     def meet(self, size: arb, omega: float) -> None:
         """Note a value that is reached."""
@@ -191,14 +192,18 @@ def _on(square: list[acb_mat], half: arb) -> arb:
 
 
 def largest_gain(
-    matrix: MatrixOnAxis, band: Part | None = None, width: float = WIDTH, enough: float = inf
+    matrix: MatrixOnAxis,
+    band: Part | None = None,
+    width: float = WIDTH,
+    enough: float = inf,
+    floor: arb = NOTHING,
 ) -> LargestGain:
     """Return bounds of the largest singular value in a band [rad/s], or at all frequencies.
 
-    ``enough`` ends the search as soon as a value above it is met.
+    ``enough`` ends the search as soon as a value above it is met; values below ``floor`` are not distinguished.
     """
     low, high = band or (0.0, inf)
-    search, reasons = _NormSearch(matrix, width), [*matrix.reasons]
+    search, reasons = _NormSearch(matrix, width, floor), [*matrix.reasons]
     starts, edge, sizes = matrix.in_discs(low, high)
     for omega in sizes:
         if low < omega < edge:

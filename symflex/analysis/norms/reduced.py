@@ -22,10 +22,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from flint import acb, acb_mat, arb
 
-from symflex.analysis.norms.axis import MatrixOnAxis
+from symflex.analysis.norms.axis import MatrixOnAxis, norm
 from symflex.analysis.norms.energy import H2Norm, integrated, noise_filter
 from symflex.analysis.norms.expanded import BITS, DIGITS, Expanded, expanded, static_value, turning_delays
-from symflex.analysis.norms.largest import LargestGain, eigenvalue_bound, eigenvalue_met, largest_gain
+from symflex.analysis.norms.largest import (
+    NOTHING,
+    LargestGain,
+    eigenvalue_bound,
+    eigenvalue_met,
+    largest_gain,
+)
 from symflex.analysis.norms.matrix_peak import matrix_on_axis
 from symflex.analysis.norms.modal_model import ModalModel, modal_model
 from symflex.analysis.rational.laurent import residues_at
@@ -49,6 +55,8 @@ if TYPE_CHECKING:
 
 SCHEMA = "symflex.reduced/1"
 MOST_MODES = 60  # kept for an error
+# Share of the size of a matrix anywhere on the axis [rad/s] that is no error: doubles round to more.
+NO_ERROR, ANYWHERE = 2.0**-57, 1.1
 SHOWN_DIGITS = 6
 Rows = Sequence[Sequence[AnyBoundFunction]]
 
@@ -460,7 +468,7 @@ def _of_modes(
     if ends is not None and ends[0] <= first <= ends[1]:
         error = LargestGain(arb(0), arb("inf"), first, ends[1], difference.reasons, (arb(first),))
     else:
-        error = largest_gain(difference, ends, enough=enough)
+        error = largest_gain(difference, ends, enough=enough, floor=_no_error(MatrixOnAxis(poles.functions)))
     if band is None and error.high < inf:
         band = (0.0, error.high / (2 * pi))
     return ReducedModel(
@@ -476,16 +484,23 @@ def _of_modes(
     )
 
 
+def _no_error(exact: MatrixOnAxis) -> arb:
+    """Return an error that is none: far below what rounding to doubles costs, where that is not exact."""
+    with precision(BITS):
+        size = norm(exact.value(acb(0, ANYWHERE)))
+        return size * NO_ERROR if size.is_finite() else NOTHING
+
+
 def _channels(model: ReducedModel) -> tuple[tuple[LargestGain, ...], ...]:
     """Return the error of each pair alone."""
     rows, columns = model.exact.shape
     if rows == columns == 1 or not model.error.most.is_finite():
         return tuple((model.error,) * columns for _ in range(rows))
     ends = None if model.band is None else (2 * pi * model.band[0], 2 * pi * model.band[1])
-    most = model.error.most
+    most, floor = model.error.most, _no_error(model.exact)
 
     def channel(i: int, j: int) -> LargestGain:
-        found = largest_gain(model.difference.entry(i, j), ends)
+        found = largest_gain(model.difference.entry(i, j), ends, floor=floor)
         # No entry is larger than the largest singular value.
         return replace(found, most=most) if found.most > most or not found.most.is_finite() else found
 

@@ -145,7 +145,7 @@ class Functions:
         """Return the response: in lanes, else with calls of the function of s."""
         if self.axis is not None:
             body = lanes(self.axis, self.members)
-        elif is_rational_in_lanes(self.program):
+        elif self.program.is_lumped and is_rational_in_lanes(self.program):
             body = rational_lanes(self.program, self.members)
         else:
             body = [
@@ -203,7 +203,7 @@ def is_rational_in_lanes(program: tree.Piecewise) -> bool:
         for value in values
         for n in value.walk()
     )
-    return program.is_lumped and program.varies and program.far is None and not calls
+    return program.varies and program.far is None and not calls
 
 
 def lanes(program: tree.Piecewise, members: Mapping[str, str]) -> list[str]:
@@ -264,6 +264,41 @@ def rational_lanes(program: tree.Piecewise, members: Mapping[str, str]) -> list[
     loop.enclose(LOOP, block.lines)
     stored = {name: f"{arrays[name]}[j]" if name in arrays else "0.0" for name in ("re", "im")}
     return _looped(outer, loop, members, stored)
+
+
+def entries_in_lanes(program: tree.Piecewise, members: Mapping[str, str]) -> list[str]:
+    """Return the body of the function that computes all entries of a matrix, likewise."""
+    outer = Body.of(members, AXIS_LANE)
+    outer.assign(program.near.constants)
+    loop, block, count = outer.within(), outer.within(3), len(program.near.values)
+    block.assign(program.near.assignments)
+    for k, node in enumerate(program.near.values):
+        value = block.term(node)
+        re, im = ("0.0", value.text) if value.kind is Kind.IMAGINARY else (value.text, "0.0")
+        if value.kind is Kind.COMPLEX:
+            g = block.hold("g", value).text
+            re, im = f"{g}.re", f"{g}.im"
+        block.say(f"re[{k}][j] =", re)
+        block.say(f"im[{k}][j] =", im)
+    loop.add(
+        f"double w[LANES], re[{count}][LANES], im[{count}][LANES];",
+        "const size_t count = n - i < LANES ? n - i : LANES;",
+        "for (size_t j = 0; j < LANES; j++) {    /* the last ones: made up to LANES */",
+        f"{STEP}w[j] = omega[j < count ? i + j : i];",
+        "}",
+    )
+    loop.enclose(LOOP, block.lines)
+    entry = outer.name("entry")
+    loop.add(
+        f"for (size_t {entry} = 0; {entry} < {count}; {entry}++) {{",
+        f"{STEP}for (size_t j = 0; j < count; j++) {{",
+        f"{STEP * 2}real[{entry} * n + i + j] = re[{entry}][j];",
+        f"{STEP * 2}imag[{entry} * n + i + j] = im[{entry}][j];",
+        f"{STEP}}}",
+        "}",
+    )
+    head = [*outer.opening(members), *outer.lines, f"{STEP}for (size_t i = 0; i < n; i += LANES) {{"]
+    return [*head, *loop.lines, f"{STEP}}}"]
 
 
 def _looped(outer: Body, loop: Body, members: Mapping[str, str], stored: Mapping[str, str]) -> list[str]:

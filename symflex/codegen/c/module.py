@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from itertools import count
 
 from symflex.codegen.c.body import KEYWORDS, LANE_FUNCTIONS, PARTS, RESERVED
-from symflex.codegen.c.functions import Functions, fits_lanes
+from symflex.codegen.c.functions import Functions, entries_in_lanes, fits_lanes, is_rational_in_lanes
 from symflex.codegen.export import MATRIX, Contents, Export, Language, MatrixMember, Outline, called_parts
 from symflex.codegen.module_text import (
     WIDTH,
@@ -172,9 +172,13 @@ class _Files:
         rows, columns = matrix.shape
         what = (
             f"At s = j omega[i] for all i < n. Entry (j, k) stands at ({columns} j + k) n + i of real and "
-            f"imag, which have room for {rows * columns} n numbers."
+            f"imag, which have room for {rows * columns} n numbers; neither may be omega."
         )
-        return [matrix.headline, "", *wrapped(what, OUTLINE.room)]
+        said = OUTLINE.verified(matrix, ".") if self._is_shared(matrix) else []
+        return [matrix.headline, "", *wrapped(what, OUTLINE.room), *said]
+
+    def _is_shared(self, matrix: MatrixMember) -> bool:
+        return matrix.program is not None and is_rational_in_lanes(matrix.program)
 
     def _matrix_head(self) -> str:
         given = "const double *omega, double *real, double *imag, size_t n"
@@ -182,8 +186,10 @@ class _Files:
         return f"{opening}{given},\n{' ' * len(opening)}const {self.structure} *p)"
 
     def _matrix(self, matrix: MatrixMember) -> str:
-        """Return the function that calls those of all entries."""
+        """Return the function of all entries, which calls those of single entries, or its own."""
         lines = [self._matrix_head(), "{"]
+        if matrix.program is not None and self._is_shared(matrix):
+            return "\n".join([*lines, *entries_in_lanes(matrix.program, self.members), "}", ""])
         for k, member in enumerate(matrix.each):
             own, at = self.functions[member.tf.name], f" + {k} * n" if k else ""
             lines.append(f"    {self.prefix}_{own.name}_freq(omega, real{at}, imag{at}, n, p);")
@@ -195,13 +201,13 @@ class _Files:
         printed = {key: functions.text() for key, functions in self.functions.items()}
         # Comments tell nothing about which functions are called.
         order = max((f.order for f in self.functions.values()), default=1)
-        below = helpers("\n".join(printed.values()), self.structure, order)
+        whole = "" if self.matrix is None else self._matrix(self.matrix)
+        below = helpers("\n".join([*printed.values(), whole]), self.structure, order)
         code = "\n".join("\n".join([*COMMENT.lines([inert(key)]), "", text]) for key, text in printed.items())
         signs = {"float": "FLT_EVAL_METHOD", "math": "", "stdint": "uint64_t", "string": "memcpy("}
         includes = "".join(f"#include <{name}.h>\n" for name, sign in signs.items() if sign in below)
         parts = [includes, self._defaults(), below, code]
-        parts += [self._matrix(self.matrix)] if self.matrix is not None else []
-        return "\n".join(part for part in parts if part)
+        return "\n".join(part for part in [*parts, whole] if part)
 
     def _defaults(self) -> str:
         lines = [f"const {self.structure} {self.prefix}_defaults = {{"]
@@ -230,4 +236,5 @@ C99 = Language(
     "C99 source and header, values at s and arrays of frequencies, verified likewise",
     c_files,
     has_real=True,
+    shares=True,
 )

@@ -256,11 +256,12 @@ class _Schedule:
             operands, free = self.forge.operands(x), self.forge.depends[x] == Depends.PARAMETERS
             node = self.forge.nodes[x].with_children(self.nodes[o] for o in operands)
             deep = 1 + max(self.depth[o] for o in operands) if operands else 0
-            is_inner = x not in roots or (shared and uses[x][0] > 0)
+            wanted = roots.count(x)  # more than once by a matrix that is symmetric
+            is_inner = not wanted or (shared and uses[x][0] + wanted > 1)
             is_minus = isinstance(node, tree.Negate)
             is_plain = not operands or (is_minus and not self.forge.operands(operands[0]))
             is_hoisted = free and uses[x][1] and not is_minus
-            is_shared = uses[x][0] + (x in roots) > 1
+            is_shared = uses[x][0] + wanted > 1
             has_name = x in self.forge.labels or is_shared or is_hoisted or deep > DEEPEST
             if is_inner and has_name and not is_plain:
                 section = 0 if not self.forge.depends[x] else 2 if x in late else 1

@@ -152,6 +152,22 @@ function evaluated(at, s) {
     return [re, im];
 }
 
+//: entries
+// Rows of the values of a matrix at s, all of which one function writes.
+function entries(s, values, of, used, rows, columns) {
+    const at = of(checked(given(values), used)), count = rows * columns, into = new Float64Array(2 * count);
+    const [x, y] = typeof s === "number" ? [s, 0.0] : s, isOne = typeof x === "number";
+    const size = isOne ? 1 : x.length, all = Array.from(into, () => new Float64Array(size));
+    for (let i = 0; i < size; i++) {
+        if (isOne) at(x, y, into);
+        else at(x[i], y[i], into);
+        for (let k = 0; k < 2 * count; k++) all[k][i] = into[k];
+    }
+    const pair = (k) => (isOne ? [all[2 * k][0], all[2 * k + 1][0]] : [all[2 * k], all[2 * k + 1]]);
+    return Array.from({ length: rows }, (_, i) =>
+        Array.from({ length: columns }, (_, j) => pair(i * columns + j)));
+}
+
 //: offered
 // A function of s and of parameters, with those of its numerator and denominator.
 function offered(value, parts, used) {

@@ -59,6 +59,30 @@ function value = everywhere(formula, s, given)
   value = reshape(formula(s, given{:}) .* ones(size(s)), shape);
 end
 
+%: entries
+function value = entries(formula, s, given, count)
+%ENTRIES  What one formula gives for all entries of a matrix, row by row.
+  [s, given, shape] = columns(s, given);
+  parts = formula(s, given{:});
+  places = reshape(1:prod(count), count).';
+  value = complex(zeros(prod(count), numel(s)));
+  for k = 1:numel(parts)
+    value(places(k), :) = parts{k};
+  end
+  value = beside(value, count, shape);
+end
+
+%: replaced
+function values = replaced(values, others, where)
+%REPLACED  Each of some values, and another one in its place where that holds.
+  for k = 1:numel(values)
+    value = values{k} .* ones(size(where));
+    other = others{k} .* ones(size(where));
+    value(where) = other(where);
+    values{k} = value;
+  end
+end
+
 %: stacked
 function value = stacked(parts)
 %STACKED  Values of all entries of a matrix, whose rows and columns come first.
@@ -70,11 +94,16 @@ function value = stacked(parts)
   for k = 1:numel(parts)
     value(k, :) = reshape(parts{k} + whole, 1, []);
   end
-  shape = size(whole);
+  value = beside(value, size(parts), size(whole));
+end
+
+%: beside
+function value = beside(value, count, shape)
+%BESIDE  Values of all entries, the rows and columns of the matrix before the shape of s.
   if numel(shape) == 2 && any(shape == 1)
-    shape = numel(whole);
+    shape = prod(shape);
   end
-  value = reshape(value, [size(parts), shape]);
+  value = reshape(value, [count, shape]);
 end
 
 %: in_pieces

@@ -49,17 +49,18 @@ def _in_blocks(function, arguments):
 #: _matrix_in_blocks
 def _matrix_in_blocks(function, arguments, rows, columns):
     """Return all entries of a matrix, each in the shape of all arguments together."""
+    block = BLOCK // 5  # more values are kept at once than for one entry
     shape = np.broadcast_shapes(*(np.shape(a) for a in arguments))
     value = np.empty((rows * columns, *shape), dtype=complex)
     expands = any(np.shape(a) not in ((), shape) for a in arguments)
-    if expands or not shape or value[0].size <= BLOCK:
+    if expands or not shape or value[0].size <= block:
         for k, entry in enumerate(function(*arguments)):
             value[k] = entry
         return value.reshape(rows, columns, *shape)
     flat = value.reshape(rows * columns, -1)
     given = [a.reshape(-1) if np.ndim(a) else a for a in arguments]
-    for start in range(0, flat.shape[1], BLOCK):
-        part = slice(start, start + BLOCK)
+    for start in range(0, flat.shape[1], block):
+        part = slice(start, start + block)
         own = (a[part] if np.ndim(a) else a for a in given)
         for k, entry in enumerate(function(*own)):
             flat[k, part] = entry
