@@ -1,7 +1,7 @@
 """What the search of the site shows first: what a reader does, then what is looked up, then what is inside.
 
-Input: a page of the site. Output: its weight in the search, from the section of the menu it stands in. Without
-weights the page of Python's loops comes before the guide of stable gains, which speaks of them longer.
+Input: a page of the site. Output: its weight in the search, from the section of the menu that it stands in.
+Without weights, the page of the loops of Python comes before the guide of stable gains, which speaks longer.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ INSIDE: Final = 0.2  # development, and pages that the menu does not have
 
 def on_page_markdown(markdown: str, page: Page, **_: object) -> str:
     """Give a page its weight."""
-    section = page.ancestors[-1].title if page.ancestors else ""
+    section = next((e.title for e in reversed([*page.ancestors])), "")
     path = page.file.src_uri
     weight = REFERENCE if path.startswith("commands/") else WEIGHTS.get(section, INSIDE)
     page.meta["search"] = {"boost": OTHERS.get(path, 3 if path == "index.md" else weight)}
