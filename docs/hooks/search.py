@@ -24,7 +24,7 @@ INSIDE: Final = 0.2  # development, and pages that the menu does not have
 
 def on_page_markdown(markdown: str, page: Page, **_: object) -> str:
     """Give a page its weight."""
-    section = next((e.title for e in reversed([*page.ancestors])), "")
+    section = next((e.title or "" for e in reversed([*page.ancestors])), "")
     path = page.file.src_uri
     weight = REFERENCE if path.startswith("commands/") else WEIGHTS.get(section, INSIDE)
     page.meta["search"] = {"boost": OTHERS.get(path, 3 if path == "index.md" else weight)}
