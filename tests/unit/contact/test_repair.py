@@ -1,9 +1,12 @@
 """The smallest dampers that make a machine passive."""
 
+from types import SimpleNamespace
+
 import pytest
+from flint import arb
 
 from symflex.contact.passivity import find_passivity
-from symflex.contact.repair import STORES, UNSTABLE, _of_domain
+from symflex.contact.repair import STORES, UNSTABLE, _of_domain, _value
 from symflex.model import ContactPort, NodeReference
 from tests.unit.contact.machines import DELAYED, LAGGED, machine
 
@@ -45,6 +48,13 @@ def test_springs_and_masses_are_said_not_to_repair():
     assert "a spring or a mass alone leaves the sign of the real part as it is" in (
         find_passivity(machine(), "tip").repair.reasons
     )
+
+
+def test_what_conducts_is_told_by_what_it_resists_where_its_value_is_that():
+    damper, resistor = (SimpleNamespace(parameter=p, unit=u) for p, u in (("b", "N*s/m"), ("R", "Ohm")))
+    assert _value(damper, arb(4), "at least", 6) == "b at least 4.00000 N*s/m"
+    assert _value(resistor, arb(4), "at least", 6) == "R at most 0.250000 Ohm"
+    assert _value(resistor, arb(4), "at most", 6) == "R at least 0.250000 Ohm"
 
 
 def test_reasons_name_elements_of_the_domain():

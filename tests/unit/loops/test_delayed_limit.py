@@ -26,6 +26,19 @@ def test_a_limit_is_given_where_one_phase_makes_all_terms_extreme():
     assert delayed_limit(above, terms({AT_ONCE: (3, 4), LATER: (0, 1)})) is None
 
 
+def test_of_one_delay_both_signs_are_taken_and_of_several_only_that_at_rest():
+    # |2 - E|/|4 + E| is largest at E = -1, 3/3. |2 - E_1 - E_2| would need both to be -1, as E and E^2 never
+    # are; at rest |2 + E_1 + E_2|/|4 - E_1 - E_2| is 4/2.
+    found = delayed_limit(terms({AT_ONCE: (2,), LATER: (-1,)}), terms({AT_ONCE: (4,), LATER: (1,)}))
+    assert found is not None and found.size.contains(1)
+    other = ((1, -1, 0),)
+    above = {AT_ONCE: (2,), LATER: (-1,), other: (-1,)}
+    assert delayed_limit(terms(above), terms({AT_ONCE: (4,)})) is None
+    above = {AT_ONCE: (2,), LATER: (1,), other: (1,)}
+    found = delayed_limit(terms(above), terms({AT_ONCE: (4,), LATER: (-1,), other: (-1,)}))
+    assert found is not None and found.size.contains(2)
+
+
 def test_a_term_that_falls_faster_leaves_it_open_from_where_a_magnitude_is_below_its_limit():
     above = terms({AT_ONCE: (0, 2), LATER: (0, 1), LATEST: (1,)})
     found = delayed_limit(above, terms({AT_ONCE: (3, 4), LATER: (0, -1)}))

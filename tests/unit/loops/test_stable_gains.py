@@ -90,6 +90,18 @@ outputs.Y = "y"
     assert [tuple(map(float, ends)) for ends in found.stable] == [(0, 1), (1, math.inf)]
 
 
+def test_a_loop_whose_order_is_lower_at_one_gain_is_stable_beside_it():
+    # K^2 s^2 + s + 1 has one pole at K = 0, where the other is infinite.
+    found = symflex.loads("""
+symflex = 1
+parameters.K = { value = 3, assume = "real" }
+signals.y = "r/(K^2*s^2 + s + 1)"
+inputs.r = {}
+outputs.Y = "y"
+""").stability("K", (-1, 1))
+    assert [tuple(map(float, ends)) for ends in found.stable] == [(-1, 0), (0, 1)]
+
+
 def test_all_digits_of_a_transcendental_boundary(loop):
     found = loop("K*D/s").stability("K", (0, 5), digits=50)
     printed = found.to_json_dict()["boundaries"][0]["gain"]["value"]

@@ -10,11 +10,11 @@ import pytest
 from symflex.matrices.exact_roots import ExactMatrix
 from symflex.matrices.matrix_roots import MatrixRoots
 from symflex.model import Model, with_numbers
-from symflex.roots import Band, Root
+from symflex.roots import Band, Mode, Modes, Region, Root
 from tests.unit.matrices.models import TWO_MASSES, model_of, numbers, of_functions, state_space
 
 
-def roots_of(model: Model, region: Band | None = None) -> MatrixRoots:
+def roots_of(model: Model, region: Region | None = None) -> MatrixRoots:
     outputs, inputs = (tuple(each.name for each in some) for some in (model.outputs, model.inputs))
     exact = ExactMatrix.of(with_numbers(model), outputs, inputs)
     assert exact is not None
@@ -237,3 +237,17 @@ def test_valves_of_the_quadruple_tank_move_a_zero_into_the_right_half_plane(spli
     expected = np.roots([23 * 30, 53, 1 - ratio])
     assert sorted([first.real, second.real]) == pytest.approx(sorted(expected), abs=1e-12)
     assert (second.real > 0) - (second.real < 0) == place
+
+
+def test_what_misses_the_inputs_is_listed_beside_any_number_of_modes_and_within_a_band_alone() -> None:
+    # -1 and -2 are seen; no input moves -3, which is 3/(2 pi) = 0.477 Hz.
+    model = state_space(numbers("-1 0 0\n0 -2 0\n0 0 -3"), numbers("1\n1\n0"), numbers("1 1 1"))
+    for region, poles, zeros in (
+        (None, [-2, -1], [-3]),
+        (Modes(1), [-1], [-3]),
+        (Mode(2), [-2], [-3]),
+        (Band(Fraction(0), Fraction(4, 10)), [-2, -1], []),
+    ):
+        found = roots_of(model, region)
+        assert values(found.located.poles) == poles
+        assert [complex(z.root) for z in found.decoupling_zeros] == zeros

@@ -2,7 +2,7 @@
 
 from cmath import exp, rect
 from itertools import product
-from math import cos, pi, sin
+from math import cos, log, pi, sin, sqrt
 from random import Random
 
 import numpy as np
@@ -10,7 +10,7 @@ import pytest
 from flint import acb, arb
 
 from symflex.balls import precision
-from symflex.roots.axes.harmonic_sum import ArcSum, ArcTerm, _most
+from symflex.roots.axes.harmonic_sum import OUTWEIGHED, ArcSum, ArcTerm, _Arc, _most
 from symflex.roots.counting.winding import RootOnPathError
 
 
@@ -126,6 +126,22 @@ def test_the_turn_on_a_long_arc_takes_no_longer():
     turn = ArcSum(tuple(term(p, 0, {0: c}) for p, c in rates.items())).turn(radius)
     assert abs(turn - 2 * radius / arb(2).sqrt()) < arb.pi() / 2
     assert turn.rad() < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("exponents", "end", "least"),
+    [
+        # exp(x) is least at the end of the eighth, exp(R/sqrt(2)); exp(x^2) halfway, exp(R^2/sqrt(2)).
+        ((1, 0), 1.0, -log(OUTWEIGHED) * sqrt(2)),
+        ((0, 1), 0.5, sqrt(-log(OUTWEIGHED) * sqrt(2))),
+        ((1, 0), 0.0, -log(OUTWEIGHED)),
+    ],
+)
+def test_one_term_outweighs_the_others_up_to_where_it_is_least_on_an_arc(exponents, end, least):
+    whole = ArcSum((term(*exponents, {0: 1}), term(0, 0, {0: 1})))
+    for share, outweighs in ((1 + 1e-6, True), (1 - 1e-6, False)):
+        arc = _Arc(whole.terms, whole._sizes, arb(least * share))
+        assert arc._outweighs(0.0, end, 0) is outweighs
 
 
 def test_a_number_turned_by_up_to_an_angle_is_bounded():
