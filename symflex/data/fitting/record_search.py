@@ -55,6 +55,7 @@ SLOW: Final = 6.0  # angle over the whole record below which a pole may lie at z
 SHARP: Final = 1e-3  # damping ratio below which a pair may be a steady sine
 MAINS: Final = (50.0, 60.0)  # Hz
 OFF_MAINS, MOST_HARMONICS = 1e-3, 20  # share by which their frequency may be off, harmonics that are named
+FEWEST_RISES, OF_A_PERIOD = 4, 0.02  # of a square wave, and share of its frequency by which harmonics are off
 NEAR_END: Final = 0.8  # share of half the sampling rate from which a mode may be an image of another
 MOST_LAGS, PORTMANTEAU, FOLLOWS = (
     40,
@@ -613,7 +614,7 @@ class Sine:
     frequency_hz: float
     error_hz: float
     amplitudes: tuple[float, ...]  # of each output
-    name: str  # the mains, or one of its harmonics, or empty
+    name: str  # the mains, or one of its harmonics or of a square wave's, or empty
 
 
 @dataclass(frozen=True, eq=False)
@@ -665,7 +666,8 @@ def described(
         hertz = float(w / (2 * np.pi))
         error = float(errors[at + k] / (2 * np.pi * problem.length_s))
         heights = tuple(float(each[k]) for each in amplitudes)
-        sines.append(Sine(hertz, error, heights, _mains(hertz, error, problem.length_s)))
+        of_input = _of_square_wave(hertz, samples[0])
+        sines.append(Sine(hertz, error, heights, of_input or _mains(hertz, error, problem.length_s)))
     sines.sort(key=lambda each: each.frequency_hz)
     warnings, poor = _doubts(problem, dynamics, solved)
     if samples[0].input is not None and (levels := few_levels(samples[0].input)[0]):
@@ -676,6 +678,20 @@ def described(
         tuple(offsets), tuple(drifts) or None,
         tuple(sines), tuple(is_coloured), tuple(residuals), tuple(shares), tuple(warnings), tuple(poor),
     )  # fmt: skip
+
+
+def _of_square_wave(hertz: float, samples: Samples) -> str:
+    """Return which harmonic of an input of two levels a sine is, if it is one: no linear machine adds it."""
+    u = samples.input
+    if u is None or np.unique(u).size != 2:  # noqa: PLR2004
+        return ""
+    rises = np.flatnonzero(np.diff(u) > 0)
+    if rises.size < FEWEST_RISES or np.ptp(np.diff(rises)) > 2:  # noqa: PLR2004 (one sample on either side)
+        return ""
+    rate = (rises.size - 1) / ((rises[-1] - rises[0]) * samples.step_s)
+    harmonic = round(hertz / rate)
+    is_one = harmonic and abs(hertz / rate - harmonic) < OF_A_PERIOD
+    return f"harmonic {harmonic} of the input's {rate:.4g} Hz, of what is not linear" if is_one else ""
 
 
 def _mains(hertz: float, error: float, length_s: float) -> str:

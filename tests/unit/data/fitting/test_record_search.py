@@ -7,7 +7,14 @@ import pytest
 
 import symflex
 from symflex.data.fitting.output_error import PoleSet
-from symflex.data.fitting.record_search import RecordSearch, Settings, _RecordKind, _reduced, _State
+from symflex.data.fitting.record_search import (
+    RecordSearch,
+    Settings,
+    _of_square_wave,
+    _RecordKind,
+    _reduced,
+    _State,
+)
 from symflex.data.measurement.measured_response import Samples
 from symflex.errors import DataError
 from tests.unit.data.records import KINDS, closed_loop, record, response, study, written
@@ -71,6 +78,13 @@ def test_hum_is_named_and_is_no_mode(tmp_path):
     assert (sine.name, sine.amplitudes[0]) == ("mains of 50 Hz", pytest.approx(0.7, abs=0.05))
     assert "(mains of 50 Hz)" in " ".join(str(fit).split())
     assert fit.to_json_dict()["record"]["sines"][0]["mains"] == "mains of 50 Hz"
+
+
+def test_harmonics_of_a_square_wave_are_not_called_mains():
+    t = np.arange(1000) * 0.001
+    samples = Samples(0.001, np.sin(t), np.where(t * 10 % 1 < 0.5, 1.0, -1.0))
+    assert _of_square_wave(100.003, samples).startswith("harmonic 10 of the input's 10 Hz")
+    assert not _of_square_wave(103.0, samples)
 
 
 def test_a_delay_of_part_of_a_sample_is_not_made_of_a_fast_pole(tmp_path):
