@@ -34,6 +34,7 @@ from symflex.data.measurement.column_names import (
     UNITS_IN_WORDS,
     WORDS,
 )
+from symflex.data.measurement.measured_response import in_si
 from symflex.data.measurement.text_table import bare
 from symflex.errors import Span, refused
 
@@ -41,6 +42,8 @@ Real = npt.NDArray[np.float64]
 
 LISTED = 12  # names of columns in a message; of more there are dots
 _BRACKET = re.compile(r"[\[({<]\s*([^\[\](){}<>]*(?:\([^()]*\)[^\[\](){}<>]*)?)\s*[\])}>]")
+_OVER = re.compile(r"\s*/\s*([A-Za-z]{1,4})\s*$")
+_RATIO_END = re.compile(r"[\s_]([A-Za-zµ]{2,3}(?:/s\^?2?)?(?:/|_per_)[A-Za-z]{1,4})\s*$")  # mag_um/V
 LONGEST_NAME: Final = 200
 
 
@@ -129,7 +132,13 @@ def _without_unit(text: str, unit_below: str) -> tuple[str, str]:
         inside = bracket[1].strip()
         shown, parts = f"{text[: bracket.start()][-1:]}[{inside}]", re.findall(PARTS, inside.lower())
         if next((row.means for row in BRACKETS if row.holds(shown, parts, _small(unit))), "") == "unit":
-            unit, text = inside, text.replace(bracket[0], " " * len(bracket[0]))
+            over = _OVER.match(text, bracket.end())  # (m/s^2)/N
+            whole = text[bracket.start() : over.end() if over else bracket.end()]
+            unit = f"({inside})/{over[1]}" if over else inside
+            text = text.replace(whole, " " * len(whole))
+    ratio = None if unit else _RATIO_END.search(text)
+    if ratio and (known := in_si(over_unit := ratio[1].replace("_per_", "/"))) and known[0] != 1:
+        return text[: ratio.start()], over_unit
     ends = (re.search(row.pattern, text, re.I) for row in UNIT_ENDS)
     end = None if unit else next(filter(None, ends), None)
     return (text[: end.start()] + text[end.end() :], end[1]) if end else (text, unit)

@@ -60,7 +60,7 @@ FACTORS: Final = {
     | {"rad": FREQUENCY_UNITS["rad/s"]}
     | dict.fromkeys(("rpm", "1/min", "u/min", "min^-1"), 1 / 60),
     "omega": FREQUENCY_UNITS | dict.fromkeys(("rad", "1/s", "s^-1", ""), FREQUENCY_UNITS["rad/s"]),
-    "phase": PHASE_UNITS,
+    "phase": PHASE_UNITS | dict.fromkeys(("cycle", "cycles", "turns"), 2 * np.pi),
 }
 """Units of each kind, and what they are in Hz or radians."""
 IN_OR_OUT = re.compile(r"(?:v|u|i|signal|voltage|ch\w?)?[ _.(]*(in|out)(?:put)?\)?", re.I)
@@ -128,7 +128,8 @@ SPELLINGS: Final = (
 )  # fmt: skip
 """How names are put in the usual words, one row after the other."""
 BRACKETS: Final = (
-    NameRow("unit", rf"\[(?:{_UNIT}|(?-i:F))\]$", "S1(deg)", "phase of S1 in deg times 0.01745", "networks"),
+    NameRow("unit", rf"\[(?:{_UNIT}|cycles?|turns|(?-i:F))\]$", "S1(deg)", "phase of S1 in deg times 0.01745",
+            "networks"),
     NameRow("unit", r"\[[^_]+/[^_]*\]$", "Real [V/W]", "real in V/W", "analysers"),
     NameRow("name", r"\w\[.*_.*\]$", "Re(A_1/u)", "real of A_1/u", "scripts"),
     NameRow("name", r"\w\[/?[\w .]*(?:\([\w .,]*\))?[\w .]*\]$", "Re(S21)", "real of S21", "networks"),

@@ -53,6 +53,9 @@ Complex = npt.NDArray[np.complex128]
 
 _SIGNALS: Final = dict.fromkeys(("e", "v", "u", "voltage"), "out") | dict.fromkeys(("i", "current"), "in")
 """Labels of a voltage and a current, whose ratio is an impedance."""
+_ANY_OHM: Final = "|".join(sorted(OHMS, key=len, reverse=True))
+RIPPLE: Final = 0.1  # share of the largest loss that a gain may rise above 0 dB in a passband
+_ATTENUATION = re.compile(r"attenuation|d[aä]mpfung|\bloss\b", re.I)
 _FORCE = re.compile(r"force|hammer|excitation|kraft", re.I)
 CROSS = re.compile(r"[sgp]_?(?:xy|yx)|.*\b(?:csd|cross)\b.*", re.I)
 FITS: Final = 1.0  # beyond it numbers are like no causal function: the ratio of energies is beyond a factor e
@@ -110,11 +113,7 @@ def assembled(
             group = _without_zeros(of_label, guesses)
             values = _values(group, lines, guesses, columns)
             coherence = group.get("coherence")
-            value = next(iter(group.values()))
-            unit = ratio_unit(value.meaning.unit, file)
-            if not unit and not _is_plain(value.meaning):
-                written = f"the unit '{value.meaning.unit[:20]}' of '{value.name[:30]}'"
-                guesses.append(f"{written} is not taken: values are as written")
+            unit = _unit_of_values(next(iter(group.values())), file, guesses)
             shares = None if coherence is None else _shares(coherence, guesses)
             kept = (frequency, *group.values())
             used |= {id(c) for c in kept} if np.any(values) else set()
@@ -253,8 +252,20 @@ def _with_frequency(
     return [replace(first, meaning=ColumnMeaning("frequency", FREQUENCY_UNITS[unit.lower()])), *columns[1:]]
 
 
+def _as_gain(column: DataColumn, guesses: list[str]) -> DataColumn:
+    """Return a column, an attenuation in dB as a gain, unless its numbers are negative as those of a gain."""
+    numbers = column.numbers.real
+    is_named = column.meaning.scale == "decibel" and _ATTENUATION.search(column.name)
+    is_named = is_named and column.meaning.word != "mag"  # as --columns says
+    if not is_named or np.nanmax(numbers) <= RIPPLE * -np.nanmin(numbers):
+        return column
+    guesses.append(f"'{column.name[:30]}' is read as the gain times -1")
+    return replace(column, numbers=-column.numbers)
+
+
 def _over_input(columns: list[DataColumn], guesses: list[str]) -> list[DataColumn]:
     """Return columns with what comes out over what goes in, where both are sizes without phases."""
+    columns = [_as_gain(c, guesses) for c in columns]
     sizes = [c for c in columns if c.meaning.kind in ("magnitude", "power")]
     ends = {c: match[1].lower() for c in sizes if (match := IN_OR_OUT.fullmatch(c.meaning.label))}
     both = {c: "in" if match[1] else "out" for c in sizes if (match := AT_ENDS.fullmatch(c.meaning.label))}
@@ -592,7 +603,7 @@ def _best(costs: dict[Choice, float], margin: float) -> Choice | None:
 
 def ratio_unit(text: str, file: str) -> str:
     """Return a unit that a header gives, where it is one of a ratio; g may be the gram and is not taken."""
-    small = "Ohm" if text.lower() in OHMS else text
+    small = re.sub(_ANY_OHM, "Ohm", text, flags=re.I)
     if small == "1":
         return small
     if "/" not in small.replace("Ohm", "/") or re.search(r"\bg\b", small):
@@ -601,6 +612,15 @@ def ratio_unit(text: str, file: str) -> str:
         return unit_of(small, file)
     except DataError:
         return ""
+
+
+def _unit_of_values(column: DataColumn, file: str, guesses: list[str]) -> str:
+    """Return the unit of a response; another one that would change values is said."""
+    unit = ratio_unit(column.meaning.unit, file)
+    if not unit and not _is_plain(column.meaning):
+        written = f"the unit '{column.meaning.unit[:20]}' of '{column.name[:30]}'"
+        guesses.append(f"{written} is not taken: values are as written")
+    return unit
 
 
 def _is_plain(meaning: ColumnMeaning) -> bool:

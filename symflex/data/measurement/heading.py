@@ -17,7 +17,7 @@ _NODE = re.compile(r"([VI])\w?\(([^()]+)\)", re.I)  # of SPICE: V(out), I(R1), I
 _LABELS = "Y_Unit_Label\t"  # of LabVIEW, above the names
 _BEHIND = re.compile(r"(?<=\w)(?:\s+in\s+|,\s*)(\S+)$")
 _SUFFIX = re.compile(
-    r"(?<=\w)_(mm|um|nm|mV|uV|kV|mA|kN|mN|Nm|deg|rpm|rad|kPa|bar|N|V|mm_s|m_s2?|rad_s|deg_s)$"
+    r"(?<=\w)_(mm|um|nm|mV|uV|kV|mA|kN|mN|Nm|deg|rpm|rad|kPa|bar|N|V|mm_s|m_s2?|rad_s|deg_s|dps)$"
 )
 """A unit behind a name: ``x in mm``, ``x, mm``, ``x_mm``."""
 

@@ -358,7 +358,7 @@ def in_si(written: str) -> tuple[float, str] | None:
         return None
     text = re.sub(r"[A-Za-z]{3,}", lambda word: WRITTEN_OUT.get(word[0].lower(), word[0]), text)
     text = re.sub(r"\b(?:rpm|rad|deg)\b", lambda word: word[0].lower(), text, flags=re.I)
-    text = _KELVIN.sub("K", text.replace("\u00ba", "\u00b0"))
+    text = _KELVIN.sub("K", re.sub(r"\bdps\b", "deg/s", text).replace("\u00ba", "\u00b0"))
     try:
         unit = parse_unit(Text.alone("", text))
     except SpecError:

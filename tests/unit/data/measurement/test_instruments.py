@@ -413,6 +413,17 @@ def test_units_in_headings_scale_decibels_over_one_and_columns_that_are_asked(tm
     (found,) = read_measurement(path, "f,mag,phase_deg")
     assert found.frequency_hz == pytest.approx(F)
     assert found.unit == "m/N" and found.values == pytest.approx(H / 1e6, rel=1e-6)
+    for head, scale, unit, factor in (
+        ("f (Hz),|Z| [kOhm],phase [deg]", 1, "Ohm", 1e3),
+        ("f (Hz),mag_um_per_V,phase_deg", 1, "m/V", 1e-6),
+        ("f (Hz),mag (mm/s^2)/N,phase [cycles]", 1 / 360, "m/(N*s^2)", 1e-3),
+    ):
+        path.write_text(head + "\n" + rows(F, SIZE, DEG * scale))
+        (found,) = read_measurement(path)
+        assert found.unit == unit and found.values == pytest.approx(factor * H, rel=1e-4)
+    path.write_text("f (Hz),attenuation (dB),phase (deg)\n" + rows(F, -DB, DEG))
+    (found,) = read_measurement(path)
+    assert found.values == pytest.approx(H, rel=1e-6) and "times -1" in " ".join(found.guesses)
     path.write_text("f (Hz),Real (g/N),Imaginary (g/N)\n" + rows(F, RE, IM))
     (found,) = read_measurement(path)  # of an acceleration, or of a mass
     assert "the unit 'g/N' of 'Real (g/N)' is not taken: values are as written" in found.guesses
