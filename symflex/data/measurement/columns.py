@@ -254,10 +254,11 @@ def _with_frequency(
 
 def _as_gain(column: DataColumn, guesses: list[str]) -> DataColumn:
     """Return a column, an attenuation in dB as a gain, unless its numbers are negative as those of a gain."""
-    numbers = column.numbers.real
-    is_named = column.meaning.scale == "decibel" and _ATTENUATION.search(column.name)
-    is_named = is_named and column.meaning.word != "mag"  # as --columns says
-    if not is_named or np.nanmax(numbers) <= RIPPLE * -np.nanmin(numbers):
+    meaning, numbers = column.meaning, column.numbers.real
+    is_asked = meaning.word == "mag"  # as --columns says
+    if is_asked or meaning.scale != "decibel" or not _ATTENUATION.search(column.name):
+        return column
+    if np.nanmax(numbers) <= RIPPLE * -np.nanmin(numbers):
         return column
     guesses.append(f"'{column.name[:30]}' is read as the gain times -1")
     return replace(column, numbers=-column.numbers)
