@@ -236,10 +236,11 @@ class LatexReader(SymbolReader):
                     before = self.tokens[self.at - 1].text
                     message = f"the number after '{before}' could be a factor, an index or a power"
                     self.refuse(message, "write it in front, as x_2 or as x^2")
-                is_bare = isinstance(value, Expression) and not names(value)
-                is_apart = self.tokens[self.at].is_spaced or text in (r"\text", r"\textrm", r"\mbox")
-                if text in FONTS and (is_bare or is_apart) and self.is_unit(any_name=is_bare):
-                    self.refuse("what follows this may be a unit or a factor")
+                if text in FONTS:
+                    is_bare = isinstance(value, Expression) and not names(value)
+                    is_apart = self.tokens[self.at].is_spaced or text in (r"\text", r"\textrm", r"\mbox")
+                    if (is_bare or is_apart) and self.is_unit(any_name=is_bare):
+                        self.refuse("what follows this may be a unit or a factor")
                 value = product_of_values(value, self.operand(), self.span(start), self.refuse)
             else:
                 break

@@ -268,6 +268,7 @@ def _opened(tokens: Sequence[LatexToken]) -> list[LatexToken]:
     In formulas that go over several rows it is ``\cr``.
     """
     out: list[LatexToken] = []
+    columns = _separating(tokens)
     opened: list[str] = []  # names of environments that are opened, empty for one that stays
     i = 0
     while i < len(tokens):
@@ -305,7 +306,7 @@ def _opened(tokens: Sequence[LatexToken]) -> list[LatexToken]:
             out.append(LatexToken(row, token.span))
             length = re.match(r"\[-?[\d.]+(pt|mm|cm|ex|em|in|\\\w+)?\]", text_of(tokens[i : i + 12]))
             i += sum(1 for _ in range(i, i + len(length[0]))) if length and "\\" not in length[0] else 0
-        elif token.text == "&" and row == r"\\" and _separates(tokens, i, out):
+        elif i - 1 in columns and row == r"\\":
             out.append(LatexToken(row, token.span))
         elif token.text not in ("&", r"\&"):
             out.append(token)
@@ -314,21 +315,41 @@ def _opened(tokens: Sequence[LatexToken]) -> list[LatexToken]:
     return out
 
 
-def _separates(tokens: Sequence[LatexToken], at: int, before: Sequence[LatexToken]) -> bool:
-    r"""Tell whether a column of ``a &= b & c &= d`` ends here, as equations stand on both sides."""
-    row: list[LatexToken] = []
-    for token, depth in with_depth(reversed(before)):
-        if token.text in (r"\\", r"\cr") and not depth:
-            break
-        row.insert(0, token)
-    following = []
-    for token, depth in with_depth(tokens[at:]):
-        if not depth and token.text in (r"\\", r"\cr", r"\end"):
-            break
-        following.append(token)
-    shown = [t for t in following if t.text != "&" and t.text not in WIDE]
-    is_joined = not shown or shown[0].text in COMPARED or not row or row[-1].text in COMPARED
-    return not is_joined and has_relation(row) and has_relation(shown)
+def _separating(tokens: Sequence[LatexToken]) -> set[int]:
+    r"""Return which ``&`` of ``a &= b & c &= d`` part two equations: those with one on both sides."""
+    at = list(with_depth(tokens))
+    follows: dict[int, tuple[bool, str]] = {}  # whether a relation follows in the row, and what is next
+    ahead: dict[int, bool] = {}
+    near = ""
+    for i in reversed(range(len(at))):
+        token, depth = at[i]
+        if token.text == "&":
+            follows[i] = ahead.get(depth, False), near
+        elif token.text in (r"\\", r"\cr"):
+            ahead[depth] = False
+        elif token.text in (r"\end", "}"):
+            ahead[depth + 1] = False
+        elif token.text in COMPARED:
+            ahead[depth] = True
+        near = near if token.text == "&" or token.text in WIDE else token.text
+    found: set[int] = set()
+    seen: dict[int, bool] = {}
+    near = ""
+    for i, (token, depth) in enumerate(at):
+        if token.text == "&":
+            has_relation_behind, behind = follows[i]
+            is_joined = behind in COMPARED or near in COMPARED
+            if seen.get(depth) and has_relation_behind and not is_joined:
+                found.add(i)
+                seen[depth] = False
+        elif token.text in (r"\\", r"\cr"):
+            seen[depth] = False
+        elif token.text in (r"\begin", "{"):
+            seen[depth + 1] = False
+        elif token.text in COMPARED:
+            seen[depth] = True
+        near = near if token.text == "&" or token.text in WIDE else token.text
+    return found
 
 
 def _is_opened(
