@@ -19,7 +19,7 @@ from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.counting.winding import RING, Cell, RootOnPathError, Winding
 from symflex.roots.functions.entire import Entire
 from symflex.roots.plane.local_roots import prove_simple, prove_together
-from symflex.roots.root import Root, count_modes
+from symflex.roots.root import Root, count_modes, overlap
 
 MARGIN = 0.03  # how far beyond the axes cells reach [rad], so that no side lies on a row of roots
 RIGHT_HALF = 1.3  # angle of the first cut across a half-plane [rad]: to the right of lightly damped roots
@@ -28,6 +28,10 @@ NUDGES = (0.0, 0.0123, 0.0371, 0.0743, 0.113, 0.171)  # shifts of a path that me
 CLOSEST = 1e-11  # cells smaller than this are not split further
 SEARCH_STEPS = 30  # steps of Newton's method in doubles
 CONVERGED = 1e-11  # step [in z] after which no further one is needed
+FEW = 12  # roots of a cell that are sought one by one before it is split
+FEW_STEPS = 8  # of Newton's method towards one of them
+SPARE = 2  # roots beside a cell that are met instead, before it is split after all
+APPROACHED = 1e-5  # step over a cell's size after which a root is near enough for its proof to find it
 FIRST_BITS = 128  # precision of points handed to proofs
 NEAR = 0.1  # size of cells in which a root without a box is enclosed by a circle
 NEIGHBOURS = 1e-4  # relative radius of the disc about a root in which others are sought, not separated
@@ -140,7 +144,10 @@ class RootSearch:
 
     def _separate(self, cell: Cell, count: int) -> tuple[list[Root], int]:
         """Return the roots in a cell known to hold ``count`` of them."""
-        search = branch([(cell, count)], self._decide, lambda counted: self._split(*counted) or ())
+        met: list[tuple[complex, Root]] = []
+        search = branch(
+            [(cell, count)], lambda counted: self._decide(*counted, met), lambda c: self._split(*c) or ()
+        )
         roots, missing = [root for found in search.decided for root in found], 0
         for part, number in search.undecided:
             found = self._as_one(part, number) if number > 0 else None
@@ -152,12 +159,55 @@ class RootSearch:
         kept = (r for r in roots if r.multiplicity and not r.im < 0 and not (self.is_even and r.re < 0))
         return list(kept), missing
 
-    def _decide(self, counted: Counted) -> list[Root] | Open[Counted] | None:
-        """Return the root of a cell if it is one; a cell without any is excluded."""
-        if counted[1] == 0:
+    def _decide(
+        self, cell: Cell, count: int, met: list[tuple[complex, Root]]
+    ) -> list[Root] | Open[Counted] | None:
+        """Return the roots of a cell if they are one, or few; a cell without any is excluded."""
+        if count == 0:
             return None
-        together = self._together(*counted) if counted[1] > 0 else None
-        return Open(counted) if together is None else together
+        apart = self._one_by_one(cell, count, met) if self.function.power < count <= FEW else None
+        together = self._together(cell, count) if apart is None and count > 0 else apart
+        return Open((cell, count)) if together is None else together
+
+    def _one_by_one(self, cell: Cell, count: int, met: list[tuple[complex, Root]]) -> list[Root] | None:
+        """Return the simple roots of a cell, each by Newton's method without those met before (Maehly 1954).
+
+        ``None`` where this does not lead to as many as it holds.
+        """
+        power = self.function.power
+        for _ in range(count // power + SPARE):
+            inside = [root for z, root in met if cell.holds(z, CONVERGED)]
+            number = sum(root.multiplicity for root in inside) * power
+            if number >= count:
+                return inside if number == count else None
+            places = [place for place, _ in met]
+            z = next((z for start in _starts(cell, places) if (z := self._next(cell, start, places))), None)
+            if z is None:
+                return None
+            with precision(FIRST_BITS):
+                s = acb(z.real, z.imag).exp().mid()
+            root = prove_simple(self.function, s, self.digits, even=self.function.is_mirrored)
+            if root is None or not root.certified or any(overlap(root, other) for _, other in met):
+                return None
+            met.append((_logarithm(root, z), root))
+        return None
+
+    def _next(self, cell: Cell, z: complex, met: Sequence[complex]) -> complex | None:
+        """Return about where the next root is from a point on; ``None`` beside the cell."""
+        for _ in range(FEW_STEPS):
+            try:
+                slope = self._winding.sample(z).slope / self.function.power - sum(1 / (z - m) for m in met)
+            except (RootOnPathError, ZeroDivisionError):
+                return None
+            if slope == 0:
+                return None
+            step = 1 / slope
+            z -= step
+            if not cell.holds(z, CONVERGED):
+                return None
+            if abs(step) < APPROACHED * cell.size:
+                return z
+        return None
 
     def _split(self, cell: Cell, count: int) -> tuple[Counted, Counted] | None:
         """Return two parts with their counts; None for a small cell, or where a root is on every cut."""
@@ -224,10 +274,22 @@ class RootSearch:
         return None if root is None else [root]
 
 
+def _starts(cell: Cell, met: Sequence[complex]) -> Sequence[complex]:
+    """Return where roots of a cell may be: where rows of those met go on, or in its middle."""
+    inside = sorted((z for z in met if cell.holds(z, cell.size)), key=lambda z: z.real)
+    ends = []
+    if len(inside) > 1:
+        ends = [2 * inside[-1] - inside[-2], 2 * inside[0] - inside[1]]
+    return [*(z for z in ends if cell.holds(z)), cell.centre]
+
+
 def _is_in(cell: Cell, root: Root) -> bool:
     """Tell whether a root lies in a cell, or at most a hair outside."""
+    return cell.holds(_logarithm(root, cell.centre), CONVERGED)
+
+
+def _logarithm(root: Root, near: complex) -> complex:
+    """Return ln of the middle of a root, next to a point."""
     with precision(FIRST_BITS):
-        z = acb(root.re.mid(), root.im.mid()).log()
-    point = complex(z.mid())
-    turns = round((cell.centre.imag - point.imag) / (2 * pi))
-    return cell.holds(point + 2j * pi * turns, CONVERGED)
+        z = complex(acb(root.re.mid(), root.im.mid()).log().mid())
+    return z + 2j * pi * round((near.imag - z.imag) / (2 * pi))

@@ -8,7 +8,7 @@ from flint import acb, arb
 
 from symflex.roots.counting.winding import Cell, Winding
 from symflex.roots.functions.entire import Sample
-from symflex.roots.plane.search import RootSearch
+from symflex.roots.plane.search import RootSearch, _starts
 from tests.unit.roots.known_functions import KnownFunction
 
 
@@ -35,6 +35,17 @@ def test_steps_between_several_roots_end_where_they_fall_no_more():
     winding = Powers((0.3 + 1j, -0.3 + 1j))
     cell = Cell(-0.5, 0.6, 0.5, 1.55)
     assert RootSearch(winding, (), 15)._together(cell, 2) is None
+    assert len(winding.samples) < 6
+
+
+def test_a_row_of_roots_goes_on_where_those_met_last_point_to():
+    # The third of 0, 0.1, 0.21, ... lies a tenth of a step beside 0.2; those met draw no step back to them.
+    row = (1j, 0.1 + 1j, 0.21 + 1j, 0.33 + 1j, 0.46 + 1j)
+    winding, cell = Powers(row), Cell(-0.02, 0.5, 0.9, 1.1)
+    start, _ = _starts(cell, row[:2])
+    assert start == pytest.approx(0.2 + 1j)
+    following = RootSearch(winding, (), 15)._next(cell, start, row[:2])
+    assert following == pytest.approx(0.21 + 1j, abs=1e-9)
     assert len(winding.samples) < 6
 
 
