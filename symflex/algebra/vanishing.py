@@ -235,7 +235,7 @@ def random_values(names: Sequence[str], random: Random, field: TaylorField) -> d
     return {name: field.constant(random.randrange(1, field.prime)) for name in names}
 
 
-BRANCHES = 4
+BRANCHES = 4  # of a wavenumber about a point where it vanishes
 ORIGIN_TERMS = 80
 TRIALS = 4  # values of the parameters that are tried in each field
 

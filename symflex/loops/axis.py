@@ -146,7 +146,7 @@ def joined(intervals: Iterable[arb]) -> tuple[arb, ...]:
     return tuple(joined)
 
 
-ORIGIN_BITS = 320
+ORIGIN_BITS = 320  # precision next to s = 0, where kernels cancel
 SHARES = (1, 0.7, 0.5)  # shares of a radius: functions are expanded about 0 up to the first that bounds them
 
 

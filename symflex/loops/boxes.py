@@ -44,7 +44,7 @@ BITS = 64  # precision of values on boxes, which are far wider
 LOWEST = 1e-6  # radius from which one is sought beyond which no root is on the right [rad/s]
 OCTAVES = 24  # pieces of the axis at first, each half as high as the next; the lowest begins at 0
 MOST_OPEN = 64  # pieces left open after which others stay as they are: halves of the box leave fewer
-COUNT_DIGITS = 10  # digits of poles of which only the number is asked for
+COUNT_DIGITS = 12  # digits of poles of which only the number, or the side of the axis, is asked for
 NEARLY = 1 / 8  # share of a value that a box may leave and this still be as good as 0
 
 Ends = tuple[Fraction, Fraction]

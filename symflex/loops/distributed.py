@@ -22,6 +22,7 @@ from symflex.balls import UndecidedError, ball, covered, precision
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.loops.axis import ORIGIN_BITS, joined
 from symflex.loops.axis_search import NEXT_TO_ZERO, NOT_PROVED_AT_ZERO, SHRINKINGS, AxisSearch
+from symflex.loops.boxes import COUNT_DIGITS
 from symflex.loops.gain_functions import GainFunctions
 from symflex.loops.loop import GainPolynomial, Loop, independent
 from symflex.loops.loop_function import LoopFunction
@@ -49,7 +50,6 @@ SLIVER = 40  # halvings of a range: what is left may be missing at an end of it
 WITHOUT_WAVES = 1e-6  # a frequency [rad/s] from which a radius is sought for polynomials in a root of s
 WAVES = 30.0  # largest argument of a kernel up to which poles are counted where no end is known
 ARCS, SHORTEST = 64, 1e-5  # parts of a quarter of a circle, at first and at least, shown free of poles
-COUNT_DIGITS = 12  # digits of poles of which only the side of the axis is asked for
 NUDGES = (0.0, 0.0137, 0.0291, 0.0531)  # shifts of the outer circle when it meets a pole [in ln]
 
 

@@ -24,7 +24,7 @@ from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.loops.apart import PolesApart, poles_apart
 from symflex.loops.axis_search import SHRINKINGS, OnAxis
 from symflex.loops.distributed import DistributedFactors
-from symflex.loops.gain_functions import RANGE_OF_NOMINAL, Limits
+from symflex.loops.gain_functions import NARROW_BITS, RANGE_OF_NOMINAL, Limits
 from symflex.loops.locus import closed_loop_roots, is_straight
 from symflex.loops.loop import GainPolynomial, Loop
 from symflex.loops.loop_function import LoopFunction, LoopValue
@@ -52,7 +52,6 @@ from symflex.transfer import bind
 
 MIRRORED = "points on the imaginary axis where mirrored poles meet are not searched"
 BRANCH = "stable gains are searched where the branch point is s = 0, and not where it lies elsewhere"
-NARROW_BITS = 20  # relative accuracy of a range of gains that is not worth a word
 GUARD_DIGITS = 6  # beyond those printed
 SAMPLE_BITS = (6, 12, 24, 48, 96, 192, 384, 768)  # bits of gains between boundaries: the fewest that do
 NEXT_TO_ZERO = 2**20  # by what the first boundary is divided where poles of a small gain are counted

@@ -19,6 +19,7 @@ from symflex.balls import UndecidedError, precision
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.loops.apart import poles_apart
+from symflex.loops.axis import ORIGIN_BITS
 from symflex.loops.loop import NO_LOOP, Loop
 from symflex.loops.loop_function import LoopFunction
 from symflex.loops.networks import AnyLoop, LoopInDisc, NetworkLoop
@@ -44,7 +45,6 @@ WIDER = (1.4, 1.15, 1.02)  # than all poles marked, a disc in which those of a n
 TURNS = (0.3, 1.9, 3.4, 5.0)
 PARTING = (2e-2, 6e-4, 2e-5)  # how far away poles that part are sought, relative to the largest at first
 TOUCHING = 1e-7
-ORIGIN_BITS = 256
 ENDS_AGREE = 1e-6
 
 

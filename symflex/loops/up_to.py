@@ -54,11 +54,11 @@ from symflex.loops.boxes import (
 )
 from symflex.loops.patches import FINER_BITS, ROOM, ULP, Bound, Patch, patch
 from symflex.loops.stability_map import PoleCount
+from symflex.roots.distributed.right_half_plane import WAVES
 from symflex.roots.functions.kernel_function import ANYWHERE, KernelFunction
 from symflex.roots.pole_zero_map import StabilityVerdict
 from symflex.roots.root import exact_fraction
 
-WAVES = 10.0  # largest argument of a kernel up to which poles are counted if no frequency is given
 FEW_WAVES = 2  # radians up to which exponentials of matrices are sharper than sums of exponentials
 FEW = 4.0  # radians of waves for which a path has as many cells as for less
 WIDER = tuple(1 + Fraction(k, 32) for k in range(9))  # of the circle, for parts whose poles meet it

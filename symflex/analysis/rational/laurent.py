@@ -23,7 +23,7 @@ from math import pi
 from flint import acb, acb_series, arb
 
 from symflex.algebra import Factored
-from symflex.algebra.vanishing import OriginSeries
+from symflex.algebra.vanishing import BRANCHES, OriginSeries
 from symflex.analysis.rational.networks import NetworkSides, Taylor
 from symflex.balls import (
     Value,
@@ -450,9 +450,6 @@ def _at_zero(bound: AnyBoundFunction, root: Root, digits: int) -> PrincipalPart:
         raise UncertifiedError(Diagnostic("SF405", message))
     is_estimate = series.is_estimate or not root.certified
     return PrincipalPart(root, root.enclosure(), series.principal_part, is_estimate)
-
-
-BRANCHES = 4  # branches of a wavenumber about a point where it vanishes
 
 
 def local_values(

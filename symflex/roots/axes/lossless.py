@@ -19,6 +19,7 @@ from flint import arb
 from symflex.balls import precision
 from symflex.budget import spend
 from symflex.roots.axes.axis_function import (
+    CLOSER,
     IMAGINARY,
     REAL,
     AxisFunction,
@@ -39,7 +40,6 @@ GRID = 0.8  # largest change of a phase [rad] from one sample to the next
 BATCH = 4096  # samples taken at once
 MOST_SAMPLES = 2_000_000  # most samples of one search, before it is given up
 NEWTON_STEPS = 6  # Newton steps from a tenth of an oscillation to all digits of a double
-CLOSER = 1e-12  # relative to t: no further Newton step is needed after one as short as this
 COUNT_BITS = 64  # precision of turns, of which only the nearest integer is wanted
 HALF = 0.5  # distance to one integer that separates it from all others
 ROUNDS = 40  # tries to aim a circle at a mode by its number; the first or second hits as a rule
