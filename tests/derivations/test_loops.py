@@ -5,7 +5,10 @@ import re
 import pytest
 
 import symflex
+from symflex.contact.over import passive_over
+from symflex.contact.passivity import find_passivity
 from symflex.loops.of_model import characteristic_loop
+from symflex.options import PassivityOptions
 from tests.house.repository import ROOT
 
 FOLDER = ROOT / "derivations" / "eppinger1988" / "loops"
@@ -14,7 +17,7 @@ TABLES = [
     for line in (FOLDER / "README.md").read_text("utf-8").splitlines()
     if line.startswith("| `")
 ]
-ROWS, CONTACTS = ([row for row in TABLES if len(row) == columns] for columns in (5, 3))
+ROWS, CONTACTS, HELD = ([row for row in TABLES if len(row) == columns] for columns in (5, 3, 2))
 NUMBER = re.compile(r"\d+\.\d+")
 
 
@@ -56,6 +59,25 @@ def test_the_stiffnesses_of_a_contact_at_which_lumped_force_loops_lose_stability
         stated = [1e3 * float(x) for x in NUMBER.findall(stable)]
         assert [float(b.gain) for b in found.boundaries] == pytest.approx(stated, rel=1e-4), name
         assert found.certified, name
+
+
+@pytest.mark.parametrize("row", HELD[:-1], ids=lambda row: row[0])
+def test_the_gain_up_to_which_anything_passive_may_hold_the_tip(row):
+    # 3.50213, 4.88568 and 3.87097 are also where a grid of Re Y of numpy's nodal equations turns negative.
+    name, stated = row[0].strip("`"), [float(x) for x in NUMBER.findall(row[1])]
+    found = passive_over(
+        symflex.load(FOLDER / f"{name}_force.toml").resolved, PassivityOptions(("tip",), ("K",), (0, 100))
+    )
+    assert found.certified
+    ends = [float(i.high.mid()) for i in found.passive]
+    assert ends == pytest.approx(stated or [100], rel=1e-4)
+
+
+@pytest.mark.slow
+def test_the_beam_may_be_held_up_to_a_gain_of_0_93():
+    for gain, is_passive in ((0.93, True), (0.94, False)):
+        model = symflex.load(FOLDER / "sliding_free_beam_force.toml", {"K": gain}).resolved
+        assert find_passivity(model, "tip", is_explained=False).passive is is_passive
 
 
 @pytest.mark.slow
