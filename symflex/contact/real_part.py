@@ -49,6 +49,7 @@ TERMS = 3  # of power series: a value, its slope and its curvature
 NEXT_TO_ZERO = 1e-7  # share of the reach of series about 0, within which a real part is that at 0
 FINE_RATIO = 1.05  # of the ends of pieces on which these series are evaluated
 SHRINKINGS = 40  # halvings of the piece about 0 on which the sign is sought
+FEW = 3  # intervals with an open sign, which are named one by one
 NARROW = 10  # bits of an interval that is said to be a frequency
 ASIDE = 0.4873  # where an interval is looked at, which is no root of a number that people write
 
@@ -267,13 +268,19 @@ class _WavePart:
         Where it may, no band reaches into the interval.
         """
         places = sorted((*roots, *undecided), key=lambda omega: float(omega.mid()))
-        signs = [self._sign(x, y) for x, y in pairwise([arb(limits[0]), *places, arb(limits[1])])]
+        first = limits[0] if is_open_below else limits[0] / 2  # up to limits[0] it is that next to 0
+        signs = [self._sign(x, y) for x, y in pairwise([arb(first), *places, arb(limits[1])])]
         lows, highs = [arb(limits[0]) if is_open_below else arb(0)], list[arb | None]()
         for omega, left, right in zip(places, signs, signs[1:], strict=False):
             is_change = left * right < 0 or any(omega is root for root in roots)
             highs.append(omega if is_change else omega.lower())
             lows.append(omega if is_change else omega.upper())
-            reasons += [] if is_change else [_open_at(omega)]
+        doubtful = [omega for omega in places if not any(omega is end for end in (*lows, *highs))]
+        wide = [omega for omega in doubtful if omega.rel_accuracy_bits() <= NARROW]
+        if len(wide) > FEW:
+            reasons.append(_open_in(wide[0].lower(), wide[-1].upper()) + ", in places")
+            doubtful = [omega for omega in doubtful if not any(omega is other for other in wide)]
+        reasons += map(_open_at, doubtful)
         highs.append(None if beyond < 0 else arb(limits[1]))
         bands = [ActiveBand(low, high) for low, high in zip(lows, highs, strict=True)]
         ends = [band.high or arb(limits[1]) for band in bands]

@@ -83,13 +83,20 @@ def find_on_axis(
                     return _refined(on, equation, ball, digits) if is_passed else None
         return Open(ends)
 
-    search = branch(pieces(*limits, FIRST_RATIO), decide, halves, most=most or MOST_INTERVALS)
+    search = branch(
+        pieces(*limits, FIRST_RATIO),
+        decide,
+        halves,
+        order="breadth" if most else "depth",  # what is hard must not leave the rest unseen
+        most=most or MOST_INTERVALS,
+    )
     if search.unseen and not most:
         message = "the search for crossings of the imaginary axis takes too long"
         raise BudgetError(
             Diagnostic("SF505", message, None, "narrow the range of the gain, or lower --up-to")
         )
-    return AxisRoots(tuple(search.decided), joined(map(ball_of, search.undecided)))
+    roots = tuple(sorted(search.decided, key=lambda omega: float(omega.mid())))
+    return AxisRoots(roots, joined(map(ball_of, sorted(search.undecided))))
 
 
 def ball_of(ends: Part) -> arb:

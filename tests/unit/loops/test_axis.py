@@ -127,3 +127,14 @@ def test_a_loop_gain_leaves_one_where_its_excess_has_no_root():
 def test_a_loop_gain_is_above_or_below_a_level_next_to_zero(parts, orders, level, radius, side):
     with precision(100):
         assert at_origin(*parts, orders=orders).side(arb(level), arb(radius)) == side
+
+
+def test_frequencies_on_which_nothing_can_be_said_do_not_leave_the_others_unseen():
+    hidden = arb(1).union(1.1)
+
+    def value(w):
+        return arb(0, 1) if w.overlaps(hidden) else w - 6
+
+    found, (undecided,) = roots_of(value, lambda w: arb(0, 1) if w.overlaps(hidden) else arb(1), most=200)
+    assert found == [pytest.approx(6)]
+    assert undecided.contains(arb(1.05)) and undecided.rad() < 0.2
