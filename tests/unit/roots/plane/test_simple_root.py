@@ -194,6 +194,14 @@ def test_a_disc_grows_over_roots_that_are_apart_and_stays_below_its_bound():
     assert together(roots, 2, within=1e-10) is None
 
 
+def test_a_disc_about_a_pair_beside_an_axis_is_put_on_it():
+    off = arb(1e-9).mid()
+    pair = [(off, arb(2)), (-off, arb(2))]
+    root = together(pair, 2, even=True, place=(2e-9, 2))
+    assert root.multiplicity == 2 and root.re.mid() == 0 and not root.on_imaginary_axis
+    assert all(holds(root, acb(*each)) for each in pair)
+
+
 @pytest.mark.parametrize("apart", [50, 99, 101, 5000])
 def test_a_disc_shrinks_until_no_other_root_is_next_to_it(apart):
     size = abs(acb(2, 3)) * arb(10) ** -12
