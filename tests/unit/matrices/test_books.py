@@ -142,7 +142,7 @@ BENCHMARK = state_space(
     numbers("1 0 0 1 0 0\n0 1 0 1 0 1\n0 0 1 0 0 1"),
 )
 POLES_AND_ZEROS = {  # the model, and zeros and poles as they are printed; nothing where none is
-    "Skogestad and Postlethwaite 2005, example 4.8": (
+    "Skogestad and Postlethwaite 2005, example 4.10": (
         of_functions(
             [f"{FRONT}*(s - 1)*(s + 2)", "0", f"{FRONT}*(s - 1)^2"],
             [f"-{FRONT}*(s + 1)*(s + 2)", f"{FRONT}*(s - 1)*(s + 1)", f"{FRONT}*(s - 1)*(s + 1)"],
@@ -150,7 +150,7 @@ POLES_AND_ZEROS = {  # the model, and zeros and poles as they are printed; nothi
         ["1"],
         ["-2", "-2", "-1", "1"],
     ),
-    "the same, example 4.7: no zero, though each entry has one": (
+    "the same, example 4.9: no zero, though each entry has one": (
         of_functions(
             ["(s - 1)/(1.25*(s + 1)*(s + 2))", "s/(1.25*(s + 1)*(s + 2))"],
             ["-6/(1.25*(s + 1)*(s + 2))", "(s - 2)/(1.25*(s + 1)*(s + 2))"],
@@ -158,12 +158,12 @@ POLES_AND_ZEROS = {  # the model, and zeros and poles as they are printed; nothi
         [],
         ["-2", "-1"],
     ),
-    "the same, example 4.10": (
+    "the same, examples 4.11 and 4.13": (
         of_functions(["(s - 1)/(s + 2)", "4/(s + 2)"], ["4.5/(s + 2)", "2*(s - 1)/(s + 2)"]),
         ["4"],
         ["-2"],
     ),
-    "the same, example 3.8": (
+    "the same, chapter 3": (
         of_functions(
             ["1/((0.2*s + 1)*(s + 1))", "1/((0.2*s + 1)*(s + 1))"],
             ["(1 + 2*s)/((0.2*s + 1)*(s + 1))", "2/((0.2*s + 1)*(s + 1))"],
@@ -220,8 +220,8 @@ def test_poles_and_zeros_are_those_in_print(name):
 
 
 def test_a_zero_has_the_directions_in_print():
-    # Skogestad and Postlethwaite 2005, example 4.10: inputs 0.80, -0.60 and outputs 0.83, -0.55.
-    model, *_ = POLES_AND_ZEROS["the same, example 4.10"]
+    # Skogestad and Postlethwaite 2005, examples 4.11 and 4.13: inputs 0.80, -0.60 and outputs 0.83, -0.55.
+    model, *_ = POLES_AND_ZEROS["the same, examples 4.11 and 4.13"]
     (direction,) = locate_matrix(model).directions
     for vector, printed in ((direction.inputs, (0.80, -0.60)), (direction.outputs, (0.83, -0.55))):
         own = np.array([complex(x).real for x in vector])
@@ -230,7 +230,7 @@ def test_a_zero_has_the_directions_in_print():
 
 
 def test_relative_gains_of_books_are_those_in_print():
-    # The same, section 10.6: a cracker with three inputs; and the column in the DV configuration.
+    # The same, example 3.10: a cracker with three inputs; and the column in the DV configuration.
     cracker = of_functions(["16.8", "30.5", "4.30"], ["-16.7", "31.0", "-1.41"], ["1.27", "54.1", "5.40"])
     found = interaction(derive_matrix(cracker))
     printed = [[1.50, 0.99, -1.48], [-0.41, 0.97, 0.45], [-0.08, -0.95, 2.03]]
