@@ -20,7 +20,7 @@ from math import inf, pi
 
 from flint import acb, arb
 
-from symflex.algebra import NO_KERNELS, degree_in
+from symflex.algebra import LAPLACE, NO_KERNELS, degree_in
 from symflex.analysis.rational.laurent import PrincipalPart, expand_at_zero, residues_at
 from symflex.balls import UndecidedError, at_centre, covered, precision
 from symflex.budget import spend
@@ -40,6 +40,8 @@ BLURRED = 10_000  # radius of a ball on the rim over the largest value there, at
 DIGITS = 30  # of poles and residues
 FURTHER = 8  # modes beyond those kept that are looked for, so that the disc reaches beyond these
 MOST_RADII = 6  # that are tried
+# Radii [rad/s] that are tried where there is no pole, and the largest growth from the axis to the circle.
+DISCS, TAMEST = tuple(10.0**k for k in range(3, -7, -1)), 16
 APART = 1.02  # least ratio of sizes of poles between which a rim passes
 ARCS, MOST_ARCS = 32, 2048  # of the upper half of the rim
 POINTS, TERMS = 96, 72  # values on the inner circle, and coefficients
@@ -164,7 +166,7 @@ def expanded(
     reasons: tuple[str, ...] = () if certificate.certified else (f"poles: {certificate.reason}",)
     if any(not hidden.is_proved for hidden in located.hidden):
         reasons += ("poles and zeros that agree in all digits cancel",)
-    radii = [inf] if is_rational else _radii(located)
+    radii = [inf] if is_rational else _radii(located, has_none=_is_entire(bound))
     inside = [pole for pole in located.all_poles if bool(pole.size() < radii[0])]
     parts = residues_at(bound, inside, digits)
     if any(part.is_estimate for part in parts):
@@ -176,7 +178,7 @@ def expanded(
         for radius in radii:
             own = tuple(part for part in parts if bool(part.root.size() < radius))
             found = _with_series(replace(function, parts=own, radius=radius))
-            if found is not None:
+            if found is not None and (located.poles or _is_tame(found)):
                 return found
     message = f"{bound.name} is not bounded about its first {len(parts)} poles"
     raise UncertifiedError(Diagnostic("SF405", message, None, "ask for fewer modes, or another number"))
@@ -186,16 +188,32 @@ def _without_poles(name: str) -> PoleZeroMap:
     return PoleZeroMap(name, Everything(), (), (), (), Certificate("none", 0, 0))
 
 
+def _is_entire(bound: AnyBoundFunction) -> bool:
+    """Tell whether a denominator has neither s nor a kernel, as that of sums of delays."""
+    if not bound.is_reduced:
+        return False
+    varying = {LAPLACE, *(k.generator for k in bound.kernels.kernels)}
+    return not varying & bound.ratio.ring.used_in(f for f, _ in bound.den.factors)
+
+
+def _is_tame(function: Expanded) -> bool:
+    """Tell whether a function without poles is hardly larger on a circle about 0 than on the axis there."""
+    size = abs(function.at(acb(0, function.radius))).lower()
+    return bool(function.rim <= TAMEST * size)
+
+
 def _has_poles_of(one: AnyBoundFunction, other: AnyBoundFunction) -> bool:
     if not (one.is_reduced and other.is_reduced):
         return False
     return one.kernels == other.kernels and one.den / one.den.unit == other.den / other.den.unit
 
 
-def _radii(located: PoleZeroMap) -> list[float]:
+def _radii(located: PoleZeroMap, *, has_none: bool) -> list[float]:
     """Return some radii that no pole is near, the largest first, within which all poles are known."""
     sizes = sorted({float(pole.size().mid()) for pole in located.poles})
     edges = [abs(complex(e.re, e.im)) - e.radius for e in located.excluded]
+    if not sizes and not edges and has_none:
+        return list(DISCS)
     if not sizes and not edges:
         message = f"no pole of {located.tf} was found, about which to expand it"
         raise UncertifiedError(Diagnostic("SF405", message))

@@ -124,7 +124,7 @@ class _NormPiece:
 
 
 class _NormSearch:
-    def __init__(self, matrix: MatrixOnAxis, width: float, floor: arb) -> None:
+    def __init__(self, matrix: MatrixOnAxis, width: float, floor: arb = NOTHING) -> None:
         self.matrix, self.width, self.floor = matrix, width, floor
         self.best, self.omega = arb(0), 0.0
         self.near: list[_NormPiece] = []  # all that may contain it
@@ -200,7 +200,7 @@ def largest_gain(
 ) -> LargestGain:
     """Return bounds of the largest singular value in a band [rad/s], or at all frequencies.
 
-    ``enough`` ends the search as soon as a value above it is met; values below ``floor`` are not distinguished.
+    ``enough`` ends the search as soon as a value above it is met; below ``floor`` none are distinguished.
     """
     low, high = band or (0.0, inf)
     search, reasons = _NormSearch(matrix, width, floor), [*matrix.reasons]

@@ -1,6 +1,6 @@
 """Peaks of matrices, by hand and on grids."""
 
-from math import sqrt
+from math import cos, pi, sqrt
 
 import numpy as np
 import pytest
@@ -111,3 +111,11 @@ def test_modes_that_hardly_any_damper_reaches_are_certified_far_out():
     shaft = symflex.loads(SHAFT).transfer_matrix().bind()
     found = shaft.peak(band=(12000, 20000))
     assert found.certified and float(found.magnitude.mid()) == pytest.approx(2900 / 370, rel=1e-5)
+
+
+def test_sums_of_delays_have_no_pole_and_a_peak():
+    # By hand: abs(1 + exp(-j omega)) is 2 at most, at omega = 0; from 0.1 to 0.4 Hz at 0.1 Hz.
+    model = symflex.Model(inputs={"u": {}}, outputs={"y": "(1 + exp(-s))*u"})
+    peak = model.transfer_matrix().bind().peak(band=(0.1, 0.4))
+    assert peak.certified
+    assert float(peak.magnitude.mid()) == pytest.approx(2 * cos(0.1 * pi), rel=3e-6)
