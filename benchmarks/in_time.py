@@ -41,10 +41,10 @@ CONTROL_AGREEMENT = 1e-6
 
 CHAIN_SECONDS, BEAM_SECONDS = 0.02, 0.5
 AS_FAST_AS_CONTROL = 0.5
-AS_FAST_AS_MPMATH = {CHAIN: 50.0, BEAM: 5.0}
+AS_FAST_AS_MPMATH = {CHAIN: 50.0, BEAM: 20.0}
 SHAFT = "damped shaft, a step at 4 times"
 SHAFT_TIMES = 0.25, 0.5, 0.75, 1.0
-AS_LONG_AS_MPMATH = 300.0
+AS_LONG_AS_MPMATH = 200.0
 """Most that enclosed values may take over Talbot's in doubles, which are proved by nothing."""
 SHAFT_MODEL = """
 symflex = 1
