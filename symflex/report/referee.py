@@ -389,6 +389,12 @@ class _Court:
                 symbol = next(s.name for s, e in self.definitions.items() if e is equation)
                 needed[equation.span] = f"{DEFINES} {symbol} of line {where.line}"
                 pending.append(lines[node.name])
+        if set(unknown) in ({"omega"}, {"Omega"}) and not any(
+            _holds(formula, n) for n in (LAPLACE, *unknown)
+        ):
+            turned, laplace = in_laplace([*lines.values()], notation)  # k^4 = mu*omega^2/EI
+            if laplace in unknown:
+                lines, unknown = dict(zip(lines, turned, strict=True)), {}
         if unknown:
             raise _untied(formula, tuple(lines.items()), unknown, model)
         self.used |= needed

@@ -301,3 +301,14 @@ def test_vectors_are_judged_row_by_row():
     ((one),) = judged(loads(MODEL), whole)
     ((other),) = judged(loads(MODEL), whole.replace("m_2s^2 \\", "2m_2s^2 \\"))
     assert (one.verdict, other.verdict) == ("equal", "different")
+
+
+def test_a_frequency_in_a_definition_alone_is_the_laplace_variable():
+    spec = """
+    symflex = 1
+    parameters = { R = {}, C = {} }
+    inputs = { U = {} }
+    outputs = { Y = "1/(1 - (R*C*s)^2)*U" }
+    """
+    paper = r"$$ \frac{Y(j\omega)}{U(j\omega)} = \frac{1}{1 + q^2}, \quad q^2 = R^2C^2\omega^2 $$"
+    assert judged(loads(spec), paper)[0].verdict == "equal"
