@@ -120,7 +120,10 @@ def symbol_of_latex(text: Text) -> PrintedSymbol | None:
         symbol = reader.whole_symbol()
     except SpecError:
         return None
-    return symbol if reader.at == len(reader.tokens) else None
+    rest = [t.text for t in reader.tokens[reader.at :] if t.text not in "{}"]
+    if rest[:1] == ["^"] and rest[1:] and all(x.isalpha() and x.isascii() for x in rest[1:]):
+        return symbol._replace(script=f"{symbol.script}^{''.join(rest[1:])}")  # theta_L^d, a label
+    return None if rest else symbol
 
 
 class SymbolReader:

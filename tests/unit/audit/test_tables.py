@@ -209,7 +209,7 @@ def test_entries_that_no_number_explains_get_no_explanation():
 def test_another_support_is_named():
     # tan b = tanh b: b = 3.92660231, 7.06858275, 10.21017612 (Blevins, table 8-1).
     found = judged(BEAM, 'prints = "f"\nvalues = ["124.26", "402.67", "840.15"]')
-    assert "wall is a pin and no fixed" in found.slip
+    assert "wall is a pin, not fixed" in found.slip
 
 
 def test_one_wrong_entry_of_few_digits_gets_no_explanation():

@@ -4,7 +4,8 @@ import pytest
 
 from symflex.errors import SpecError, Text
 from symflex.expressions import format_expression
-from symflex.papers.symbols import PrintedSymbol, symbol_of_latex
+from symflex.papers.formula import read_latex
+from symflex.papers.symbols import PrintedSymbol, notation_of, symbol_of_latex
 from tests.unit.papers.reading import read
 
 
@@ -26,3 +27,9 @@ def test_words_in_a_formula_are_names_and_never_lost() -> None:
     assert format_expression(read(r"G = V\text{in}")) == "V*in"
     assert format_expression(read(r"G = a \text{ (rad/s)}")) == "a"
     assert format_expression(read(r"G = a\;{\rm where}\; a = b")) == "a"
+
+
+def test_a_superscript_of_letters_may_be_tied():
+    notation = notation_of([("theta_d", "")], (), [(r"\theta_L^d", "theta_d")])
+    (formula,), _ = read_latex(Text.alone("f", r"\frac{\theta_L^d}{2}"), notation)
+    assert format_expression(formula) == "theta_d/2"
