@@ -2,6 +2,9 @@
 
 Input: a model with ``[sampled]`` and a port. Output: a :class:`HybridPassivity`.
 
+What supplies no energy may be connected to that mass, beams too, and touched anywhere: then the whole is
+passive if the mass is.
+
 A mass m with a damper b, the force ``-H(z) x`` of whose motor is held between samples of its position, is
 passive at the mass exactly if, for all frequencies up to half of the sampling frequency,
 
@@ -25,6 +28,7 @@ from flint import arb, fmpq, fmpq_poly, fmpz_mpoly
 from symflex.algebra import LAPLACE, Factored, Ring, by_powers, degree_in
 from symflex.analysis.sampled_loop import SampledPoles, sampled_poles
 from symflex.balls import ball, precision
+from symflex.contact.one_place import PROOF, at_one_place
 from symflex.contact.passivity import UNSTABLE
 from symflex.contact.port import at_port
 from symflex.errors import Diagnostic, ModelError
@@ -47,6 +51,7 @@ from symflex.model.sampled import OpenedLoop, opened
 from symflex.print.notebook import Printed
 from symflex.print.text import Passage
 from symflex.roots import RootProblem, find_polynomial_roots
+from symflex.roots.passivity import energy_proof
 from symflex.roots.root import figure, hertz, real_json, short_hertz
 from symflex.transfer.lowest_terms import cancel
 from symflex.transfer.of_model import derive_all
@@ -70,6 +75,7 @@ class HybridPassivity(Printed):
     condition: str  # in symbols; empty where its ends do not say all
     excess: int | None  # the sign of what the damping is beyond what is needed; None where it is not known
     alone: SampledPoles  # the poles of the machine alone
+    proof: str = ""  # why a machine is passive of which this is said of one place
 
     @property
     def passive(self) -> bool | None:
@@ -104,11 +110,13 @@ class HybridPassivity(Printed):
         """Return the verdict and the condition."""
         word = {True: "PASSIVE, proved", False: "ACTIVE, proved", None: "NOT DECIDED"}[self.passive]
         lines = [f"port {self.port}, with a sampled controller   {word}"]
+        lines += [f"  {self.proof}"] if self.proof else []
         lines += [f"  {fault}" for fault in self.faults]
         if self.passive is None:
             lines += [f"  not proved: {reason}" for reason in self.reasons]
         if self.condition:
-            lines.append(f"  if stable alone, passive exactly for {self.condition}, and at that bound")
+            place = "there " if self.proof else ""
+            lines.append(f"  if stable alone, passive {place}exactly for {self.condition}, and at that bound")
         if self.needed is None:
             return [Passage([*lines, f"  {INFINITE}"])]
         place = "" if self.omega is None else f", at {short_hertz(self.omega)} Hz"
@@ -128,6 +136,7 @@ class HybridPassivity(Printed):
             "needed_damping": None if self.needed is None else real_json(self.needed, SHOWN_DIGITS),
             "frequency_hz": None if self.omega is None else float(hertz(self.omega).mid()),
             "condition": self.condition,
+            "proof": self.proof,
             "faults": list(self.faults),
             "reasons": [] if self.passive is False else list(self.reasons),
         }
@@ -138,7 +147,22 @@ def find_hybrid(model: Model, port: str | None) -> HybridPassivity:
 
     ModelError: SF262 where the machine there is no mass with a damper that the controller acts on and sees.
     """
-    loop, chosen = opened(model), port_named(model, port)
+    chosen = port_named(model, port)
+    try:
+        return _at_mass(model, chosen)
+    except ModelError:
+        parts = at_one_place(model)
+        if parts is None or not energy_proof(parts[2]).is_passive:
+            raise
+        part, place, _ = parts
+        found = _at_mass(part, place)
+        if not found.passive:
+            raise
+        return replace(found, port=chosen.name, proof=PROOF.format(place.name))
+
+
+def _at_mass(model: Model, chosen: ContactPort) -> HybridPassivity:
+    loop = opened(model)
     if len(loop.channels) > 1:
         raise _other("several places take samples")
     driven, pair = at_port(loop.model, chosen)
@@ -152,7 +176,10 @@ def find_hybrid(model: Model, port: str | None) -> HybridPassivity:
 
 
 def _other(reason: str) -> ModelError:
-    hint = "it applies to a mass with a damper whose position is sampled, and on which the held force acts"
+    hint = (
+        "it applies to a mass with a damper whose position is sampled, and on which the held force acts; "
+        "what is connected to it must supply no energy"
+    )
     return ModelError(Diagnostic("SF262", WHAT + reason, None, hint))
 
 

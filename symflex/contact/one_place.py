@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from symflex.contact.port import ADMITTANCES, with_branch
-from symflex.expressions import Attribute, Call, Derivative, Name, names, number
+from symflex.expressions import Attribute, Call, Derivative, Name, names, names_among, number
 from symflex.library.elements import Variable
 from symflex.library.elements.lumped import ThroughSource
 from symflex.model import ContactPort, Model, NetworkNode, NodeReference, PlacedElement, scope_of
@@ -51,7 +51,8 @@ def at_one_place(model: Model) -> tuple[Model, ContactPort, Model] | None:
         if e in active or (e.element.type_name in LUMPED and _moved(e, model) == places)
     ]
     others = [e for e in model.elements if e not in kept]
-    if not others:
+    blocks = {b.name for b in model.blocks}
+    if not others or any(names_among(x, blocks) for e in others for _, x in e.all_values):
         return None
     ports = {c: _port(node, c) for c in node.components}
     port = ports.pop(place.component)
@@ -59,7 +60,7 @@ def at_one_place(model: Model) -> tuple[Model, ContactPort, Model] | None:
     part = replace(model, nodes=(node,), elements=tuple(kept), inputs=free, outputs=(), ports=())
     for other in ports.values():
         part = _held_softly(part, other)
-    rest = replace(model, elements=tuple(others), signals=(), blocks=(), outputs=(), ports=())
+    rest = replace(model, elements=tuple(others), signals=(), blocks=(), outputs=(), ports=(), sampled=None)
     return part, port, _held_softly(rest, port)
 
 

@@ -153,3 +153,33 @@ def test_the_stiffest_wall_that_is_passive_with_a_sample_of_delay():
     (interval,) = values.passive
     stiffest = float(interval.high.mid())
     assert needed(lambda z: (stiffest + 0.3 * (z - 1) / (1e-3 * z)) / z) == pytest.approx(0.7, rel=1e-6)
+
+
+ARM = """symflex = 1
+parameters = { K = "20 N*m/rad", T = "2 ms", b = "0.3 N*m*s/rad", EI = "10 N*m^2", rhoA = "1 kg/m", l = 1 }
+[blocks]
+C = "K*(1 + 5*(z - 1)/z)"
+[sampled]
+period = "T"
+[elements]
+hub = { type = "inertia", at = "h.theta", J = "0.05 kg*m^2" }
+pin = { type = "pin", at = "h" }
+arm = { type = "beam", between = ["h", "tip"], EI = "EI", rhoA = "rhoA", l = "l" }
+bearing = { type = "rotary_damper", between = ["h.theta", "ground"], b = "b" }
+servo = { type = "torque_source", at = "h.theta", tau = "-C*h.theta" }
+[inputs]
+F = { force = "tip" }
+[outputs]
+X = "tip"
+"""
+
+
+def test_a_beam_on_a_hub_with_a_sampled_controller_is_passive_at_its_tip_if_the_hub_is():
+    # K T/2 + |5 K T| = 0.02 + 0.2 of the hub alone; the beam supplies no energy.
+    arm = find_hybrid(pipeline.loads(ARM), "tip")
+    assert (arm.passive, arm.port) == (True, "tip")
+    assert float(arm.needed.mid()) == pytest.approx(0.22, rel=1e-12)
+    assert "all that acts at h.theta" in arm.passages()[0].lines[1]
+    with pytest.raises(ModelError) as refused:
+        find_hybrid(pipeline.loads(ARM.replace("0.3 N*m", "0.21 N*m")), "tip")
+    assert refused.value.diagnostics[0].code == "SF262"
