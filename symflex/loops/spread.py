@@ -18,6 +18,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import count
+from typing import Final, Literal
 
 from flint import acb
 
@@ -31,11 +32,12 @@ from symflex.model import Model, ModelParameter, spread_box
 from symflex.options import StabilityOptions, Stated, share_of
 from symflex.print.notebook import Printed
 from symflex.print.text import Passage
-from symflex.roots.passivity import energy_proof
+from symflex.roots.passivity import EnergyProof, energy_proof
 from symflex.roots.pole_zero_map import StabilityVerdict
 from symflex.transfer import Given
 
 Point = tuple[Fraction, ...]  # a value of every parameter, in SI units
+STAYS: Final = "stable or marginal"  # as energy keeps all poles out of the right half-plane
 MOST_BOXES = 10_000  # boxes after which it stays undecided: about a minute for lumped loops
 MOST_AT_REST = 200  # boxes on which the model is looked at at rest
 FOLLOWED = 4  # modes of a distributed model whose poles are pushed towards the axis
@@ -50,7 +52,7 @@ class SpreadStability(Printed):
     units: tuple[str, ...]
     counted_in: tuple[tuple[str, Fraction], ...]  # units in which it prints, and what one of them is
     box: Box
-    word: Word
+    word: Word | Literal["stable or marginal"]
     boxes: int = 0  # how many were needed
     unstable: int = 0  # poles in the right half-plane for the combination
     combination: Point | None = None  # for which it is proved not to be stable
@@ -62,9 +64,10 @@ class SpreadStability(Printed):
 
     def passages(self) -> list[Passage]:
         """Return the verdict, and the box beside the combination or the part that it is about."""
-        word = f"{self.word}: {self.reason}" if self.reason else self.word
         count = f" by {self.unstable}" if self.unstable else ""
-        word += {"stable": " for every combination", "unstable": count}.get(self.word, "")
+        every = " for every combination"
+        word = self.word + {"stable": every, STAYS: every, "unstable": count}.get(self.word, "")
+        word += f": {self.reason}" if self.reason else ""
         other: Sequence[Point] = self.open_box or tuple((x,) for x in self.combination or [])
         other = other or [()] * len(self.box)
         rows: list[tuple[str, ...]] = [("", "from", "to", self.word, "to")[: 3 + len(other[0])]]
@@ -137,19 +140,25 @@ def find_spread(
     """Return what holds for all parameters of a characteristic function in a box."""
     units, counted_in = (p.unit for p in parameters), (p.counted_in for p in parameters)
     result = SpreadStability(function.names, tuple(units), tuple(counted_in), box, "undecided")
+    energy = _energy(function, box)
+    stays = replace(result, word=STAYS, reason="nothing supplies energy; poles may lie on the axis")
     try:
         located = function.located(middle_of(box), FOLLOWED)
         if located.verdict.word != "stable":
-            return _at(result, located.verdict, middle_of(box))
-        if (boxes := _boxes_of_rest(function, box)) is not None:
+            is_open = energy is not None and located.verdict.word == "unknown"
+            return stays if is_open else _at(result, located.verdict, middle_of(box))
+        if energy and energy.rests and (boxes := _boxes_at_rest(function, box)) is not None:
             return replace(result, word="stable", boxes=boxes)
         poles = [complex(root) for root in located.all_poles if not root.im < 0]
         tried: set[Point] = set()
         for s in sorted(poles, key=lambda s: (reach(function, s, box)[0] + s).real)[-FOLLOWED:]:
             if (unstable := _pushed(function, s, box, result, tried)) is not None:
                 return unstable
-        search = _searched(function, box, result, tried)
+        is_long = function.at_rest[0].is_rational or energy is None  # with waves a box takes longer
+        search = _searched(function, box, result, tried, MOST_BOXES if is_long else MOST_AT_REST)
     except BudgetError as error:
+        if energy:
+            return stays
         return replace(result, reason=error.diagnostics[0].message, open_box=box)
     except SymflexError as error:
         return replace(result, reason=error.diagnostics[0].message)
@@ -158,20 +167,26 @@ def find_spread(
     if not search.undecided:
         return replace(result, word="stable", boxes=search.spent)
     undecided, boxes = len(search.undecided), search.spent - (search.over is not None)
+    if energy:
+        return replace(stays, boxes=boxes)
     ends = (str(each.radius) for each in search.undecided if not each.is_bounded)
     reason = next(ends, f"poles may meet the axis in {undecided} of {boxes + undecided} boxes")
     reason = search.over.message if search.over else reason
     return replace(result, boxes=boxes, open_box=search.undecided[0].box, reason=reason)
 
 
-def _boxes_of_rest(function: CharacteristicFunction, box: Box) -> int | None:
-    """Return on how many boxes no pole is at 0, if energy keeps all others on the left; else None."""
-    tf, factors = function.at_rest
+def _energy(function: CharacteristicFunction, box: Box) -> EnergyProof | None:
+    """Return the proof that no combination has a pole on the right, None if energy does not show it."""
+    tf = function.at_rest[0]
     if not all(low > 0 for low, _ in box):
         return None
     energy = energy_proof(tf.model, (), tf.output, function.names)
-    if not (energy.is_passive and energy.rests):
-        return None
+    return energy if energy.is_passive else None
+
+
+def _boxes_at_rest(function: CharacteristicFunction, box: Box) -> int | None:
+    """Return on how many boxes no pole is at 0, None if some stay open."""
+    tf, factors = function.at_rest
 
     def decide(part: OpenBox) -> Open[OpenBox] | None:
         with precision(BITS):
@@ -183,7 +198,7 @@ def _boxes_of_rest(function: CharacteristicFunction, box: Box) -> int | None:
 
 
 def _searched(
-    function: CharacteristicFunction, box: Box, result: SpreadStability, tried: set[Point]
+    function: CharacteristicFunction, box: Box, result: SpreadStability, tried: set[Point], most: int
 ) -> Branching[OpenBox, SpreadStability]:
     """Return boxes on which poles may meet the axis, or a point that is proved unstable."""
     numbers = count(1)
@@ -207,7 +222,7 @@ def _searched(
         decide,
         function.halves,
         order="breadth",
-        most=MOST_BOXES,
+        most=most,
         until=lambda found, _: bool(found.decided),
         keeps=True,
     )

@@ -176,4 +176,5 @@ def test_a_mode_that_rests_on_a_damper_for_some_values_keeps_a_machine_from_bein
         outputs={"X": "x"},
     )
     assert model.stability(spread="1 %").word == "stable"
-    assert model.stability(spread="60 %", budget=0.5).word != "stable"
+    found = model.stability(spread="60 %", budget=0.5)
+    assert found.word == "stable or marginal" and found.certified  # as nothing supplies energy
