@@ -1,9 +1,11 @@
 """Forms on pieces of the axis contain the function, at the functions for which bounds are attained."""
 
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cache
 from itertools import pairwise
 from math import inf
+from types import SimpleNamespace
 
 import mpmath as mp
 import numpy as np
@@ -61,6 +63,12 @@ def test_coefficients_are_those_of_taylor_and_the_last_has_the_values_at_both_en
         assert last.real.overlaps(near.real) and last.imag.overlaps(near.imag)
     assert form.off == form.in_middle == 0 and len(form.powers) == ORDER
     assert complex(matrix.value(acb(0, 1.1))[0, 0].mid()) == pytest.approx(complex(along(mp.mpf("1.1"))))
+
+
+def test_the_last_coefficient_is_no_wider_than_its_piece():
+    # 2/(5 + j w)^6 is 2.9e-5 at 4 rad/s, and changes by 6*0.1/6.4 of it within 0.1 rad/s; balls by more.
+    last = of_terms((-5, 1, 2)).in_disc(3.9, 4.1).powers[-1][0, 0]
+    assert last.real.rad() + last.imag.rad() < 6 * 2.9e-5 * 6 * 0.1 / 6.4 < 2.9e-5
 
 
 def test_values_on_a_ball_contain_those_at_its_rim():
@@ -136,6 +144,16 @@ def test_the_tail_of_poles_on_the_axis_is_attained():
     assert complex(more.limit()[0, 0]) == -7
     assert [float(x.real) for x in more.entry(0, 0).value(acb(0, 4)).entries()] == [-7]
     assert more.entry(1, 0).terms[0].power == 2
+
+
+@pytest.mark.parametrize(("power", "tail"), [(Fraction(1, 2), None), (0, 3), (Fraction(-1, 2), 1)])
+def test_a_tail_is_bounded_where_it_does_not_grow(power, tail):
+    # 3 w^p at 9 rad/s and beyond.
+    matrix = MatrixOnAxis(((SimpleNamespace(used=1.0, radius=2.0),),))
+    size = SimpleNamespace(power=Fraction(power), most=arb(3))
+    matrix.__dict__["_far"] = [SimpleNamespace(size=lambda omega: size)]
+    found = matrix.tail(9.0)
+    assert (found is None) if tail is None else float(found) == pytest.approx(tail)
 
 
 def test_a_rational_part_that_is_nearly_the_function_is_subtracted_fraction_by_fraction():

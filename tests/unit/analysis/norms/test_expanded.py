@@ -1,5 +1,7 @@
 """Principal parts and a power series in place of a function."""
 
+from math import pi
+
 import pytest
 from flint import acb, acb_poly
 
@@ -18,6 +20,21 @@ def test_parts_and_series_add_up_to_the_function():
             value += sum(c / (s - part.pole) ** k for k, c in enumerate(part.coefficients, 1))
         assert complex(value) == pytest.approx(response(omega), rel=1e-9)
     assert float(function.missing) < 1e-12 and function.reasons == ()
+
+
+def test_parts_and_series_of_a_hyperbolic_tangent_are_those_of_a_table():
+    # tanh(s)/s is the sum of 2/(s^2 + p^2), p = pi/2, 3 pi/2, ...; about 0 it begins with 1 - s^2/3.
+    model = symflex.Model(inputs={"u": {}}, outputs={"y": "u*(1 - exp(-2*s))/((1 + exp(-2*s))*s)"})
+    function = expanded(model.transfer_function("y", "u").bind().bound, 1)
+    inside = [(k + 0.5) * pi for k in range(int(function.radius / pi + 0.5))]
+    found = sorted((complex(part.pole).imag, complex(part.coefficients[0]).imag) for part in function.parts)
+    assert found == [
+        (pytest.approx(p), pytest.approx(-1 / p)) for p in sorted([*inside, *(-p for p in inside)])
+    ]
+    zeroth, first, second = (complex(x) for x in function.regular[:3])
+    assert zeroth == pytest.approx(1 - sum(2 / p**2 for p in inside), abs=1e-13)
+    assert second == pytest.approx(sum(2 / p**4 for p in inside) - 1 / 3, abs=1e-13)
+    assert abs(first) < 1e-20 and function.reasons == ()
 
 
 def test_a_delay_of_all_is_taken_out():
