@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import partial
 from typing import Final
 
@@ -90,7 +91,8 @@ def _groups(tf: AnyTransferFunction, labels: Mapping[str, str]) -> Iterator[Bloc
     yield equations([(scaled, head.expression)], {**labels, **SCALE}, f"{tf.name} with groups", where)
     runs = list[Run]()
     for row in rows:
-        runs += [labelled(Name(row.name), SCALE), f": {unit_text(row.comment)}. "] if row.comment else []
+        said = unit_text(row.comment.strip())
+        runs += [labelled(Name(row.name), SCALE), f": {said}. "] if said else []
     if runs:
         yield text(*runs)
 
@@ -118,11 +120,17 @@ def _factor(factor: SymbolicFactor, labels: Mapping[str, str]) -> Iterator[Block
     for name, formula in names:
         if formula.value is not None:
             runs += [name, f" = {decimal(formula.value)} {formula.unit}".rstrip() + ". "]
-    for line in factor.more():
-        what, _, condition = line.partition(IF)
-        if len(condition) < LONGEST:
-            runs += [Code(line), ". "]
-        else:
-            runs += [f"{what.capitalize()} under a condition that ", Code("roots --symbolic"), " prints. "]
+    for statement, holds, conditions in factor.kinds:
+        words, _, condition = statement.partition(IF)
+        runs.append(f"{words[0].upper()}{words[1:]}")
+        if len(condition) >= LONGEST or not all(each.sides for each in conditions):
+            runs += [" under a condition that ", Code("roots --symbolic"), " prints. "]
+            continue
+        for i, each in enumerate(conditions):
+            left, right = (labelled(side, labels) for side in each.sides or ())
+            runs += [" and " if i else IF, left, f" {each.sign} ".replace("!=", "≠"), right]
+        runs.append(", as here. " if holds and conditions else ". ")
+    for line in replace(factor, kinds=()).more():
+        runs += [Code(line), ". "]
     if runs:
         yield text(*runs)
