@@ -28,6 +28,7 @@ from symflex.balls import Branching, ball, branch, precision
 from symflex.contact.hybrid import changes_of, find_hybrid
 from symflex.contact.passivity import find_passivity
 from symflex.contact.port import at_port
+from symflex.contact.two_ports import find_two_ports
 from symflex.errors import BudgetError, Diagnostic, SymflexError, UsageError, refused
 from symflex.loops.loop import pick_gain
 from symflex.loops.over import limits_of
@@ -50,6 +51,7 @@ SLICES = 21  # values of the second parameter of a chart
 COARSEST = 8  # every so many slices are the first: if the time ends, what is known is spread over the range
 SPARE = 8  # digits of roots beyond those printed
 NOT_EVERY = "some values that were tried are not decided, or none of them is passive"
+TRIED_ONLY = "between values that were tried, as of two ports no polynomial says where a verdict changes"
 NOT_BETWEEN = "between values that were tried, as neither impedance nor admittance is a straight line in '{}'"
 
 
@@ -116,7 +118,9 @@ class PassiveValues(Printed):
             lines += [f"{INDENT}{word} for:"] if chosen else []
             for i in chosen:
                 with precision(BITS):
-                    ends = [figure(x / ball(size), self.digits, trimmed=True) for x in (i.low, i.high)]
+                    # An end between values that were tried is known to few digits.
+                    spans = (i.low.lower(), i.high.upper()) if is_passive is None else (i.low, i.high)
+                    ends = [figure(x / ball(size), self.digits, trimmed=True) for x in spans]
                 lines.append(f"{INDENT * 2}{ends[0]} < {name} < {ends[1]}")
         if not self.passive and self.certified:
             lines.append(f"{INDENT}passive for none of them")
@@ -181,20 +185,20 @@ def passive_over(model: Model, given: PassivityOptions) -> PassiveValues | Passi
     names = tuple(given.over)
     if len(names) > 2 or len(set(names)) < len(names):  # noqa: PLR2004 (a chart has two axes)
         raise UsageError(Diagnostic("SF902", "give one or two parameters, each once: --over K --over B"))
-    if len(given.ports) > 1:
-        raise refused("--over is not available for two ports", "ask without it, with --set for each value")
-    port = port_named(model, next(iter(given.ports), None))
+    if len(given.ports) > 1 and model.sampled is not None:
+        raise refused("two ports of a machine with a sampled controller are not judged", "name one of them")
+    ports = tuple(port_named(model, name) for name in given.ports or (None,))
     first, *others = (pick_gain(model.parameters, name) for name in names)
     limits = limits_of(model, first, given.stability)
     if not others:
-        return _values_of(model, port, first, limits, given.digits)
+        return _values_of(model, ports, first, limits, given.digits)
     (other,) = others
     low, high = limits_of(model, other, given.stability)
     steps = (low + (high - low) * i / (SLICES - 1) for i in range(SLICES))
     values = [x for x in steps if x > 0 or (x == 0 and other.assume != "positive") or other.assume == "real"]
     search: Branching[Fraction, tuple[Fraction, PassiveValues]] = branch(
         sorted(values, key=lambda x: -gcd(values.index(x), COARSEST)),
-        lambda x: (x, _values_of(_with(model, other, x), port, first, limits, given.digits)),
+        lambda x: (x, _values_of(_with(model, other, x), ports, first, limits, given.digits)),
         lambda _: (),
         keeps=True,
     )
@@ -220,15 +224,22 @@ def _with(model: Model, parameter: ModelParameter, value: Fraction) -> Model:
 
 
 def _values_of(
-    model: Model, port: ContactPort, parameter: ModelParameter, limits: tuple[Fraction, Fraction], digits: int
+    model: Model,
+    ports: tuple[ContactPort, ...],
+    parameter: ModelParameter,
+    limits: tuple[Fraction, Fraction],
+    digits: int,
 ) -> PassiveValues:
-    """Return for which values of one parameter a machine is passive."""
+    """Return for which values of one parameter a machine is passive at a port, or at two together."""
+    port = replace(ports[0], name=" and ".join(each.name for each in ports))
 
     def verdict(value: Fraction) -> bool | None:
         there = _with(model, parameter, value)
         try:
             if model.sampled is not None:
                 return find_hybrid(there, port.name).passive
+            if len(ports) > 1:
+                return find_two_ports(there, [each.name for each in ports], digits).passive
             return find_passivity(there, port, digits, is_explained=False).passive
         except BudgetError:
             raise
@@ -236,6 +247,10 @@ def _values_of(
             return None
 
     asked = PassiveValues(port, parameter, limits, (), digits)
+    if len(ports) > 1:
+        intervals, is_decided = _tried(verdict, limits)
+        doubts = (TRIED_ONLY,) if is_decided else (TRIED_ONLY, NOT_EVERY)
+        return replace(asked, intervals=_joined(intervals), reasons=doubts)
     if model.sampled is not None:
         conditions: list[fmpz_mpoly] | None = changes_of(model, port, parameter.name)
     else:

@@ -123,3 +123,26 @@ def test_a_damper_beside_the_spring_leaves_less_of_it_to_an_integrator():
     values = passive_over(machine(DAMPED_ELASTIC), PassivityOptions(("y",), ("K_v",), (0, 400)))
     assert values.certified
     assert ends(values) == [(0.0, pytest.approx(3 * 150**2 / (3 * 150 + 0.4 * 5), rel=1e-12))]
+
+
+DAMPED_PAIR = """symflex = 1
+parameters = { g = 1, b_1 = "1 N*s/m" }
+[elements]
+one = { type = "damper", between = ["x", "ground"], b = "4 N*s/m" }
+other = { type = "damper", between = ["y", "ground"], b = "6 N*s/m" }
+link = { type = "damper", between = ["x", "y"], b = "1 N*s/m" }
+more = { type = "force_source", at = "x", f = "g*s*y*b_1" }
+[inputs]
+F = { force = "x" }
+[outputs]
+X = "x"
+"""
+
+
+def test_two_ports_are_judged_together_at_values_that_are_tried():
+    # Z = [[5, -1 - g], [-1, 7]] N s/m: its Hermitian part is not negative up to (2 + g)^2 = 4 * 35.
+    asked = PassivityOptions(("x", "y"), ("g",), (0, 40))
+    values = passive_over(machine(DAMPED_PAIR), asked)
+    assert not values.certified
+    assert values.port.name == "x and y"
+    assert ends(values) == [(0.0, pytest.approx(2 * 35**0.5 - 2, abs=0.01))]
