@@ -182,7 +182,7 @@ class PrintedEquation(NamedTuple):
 
     sides: tuple[tuple[LatexToken, ...], ...]  # without the relations between them
     is_condition: bool = False  # says where something holds: after "for", or an inequality
-    nearly: Span | None = None  # where it only says that two sides are nearly equal
+    nearly: Span | None = None  # where it first says that two sides are nearly equal
 
     @property
     def span(self) -> Span:
@@ -204,7 +204,7 @@ def statements(tokens: Sequence[LatexToken]) -> tuple[PrintedEquation, ...]:
         trimmed = _trimmed(piece)
         for i, (token, depth) in enumerate(with_depth(trimmed)):
             if not depth and token.text in COMPARED:
-                nearly = token.span if token.text in NEARLY else nearly
+                nearly = nearly or (token.span if token.text in NEARLY else None)
                 is_ordered |= token.text in ORDERED
                 sides.append([])
             elif token.text != ":" or text_of(trimmed[i + 1 : i + 2]) != "=":

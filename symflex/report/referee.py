@@ -76,6 +76,7 @@ SAID: Final[Mapping[Judgement, tuple[str, Tone]]] = {
     "not read": ("not judged", "quiet"),
 }
 DEFINES: Final = "it defines"
+NEARLY: Final = "it holds only nearly, by its sign"
 MOST_PAIRS: Final = 6  # transfer functions that a formula without a left side is compared with
 MOST_LISTED: Final = 6  # symbols without a meaning
 MOST_SIDES: Final = 20
@@ -211,18 +212,15 @@ class _Court:
         return last
 
     def judged_by(self, item: _Item, model: Model) -> JudgedFormula:
-        equation = item.equation
-        if equation.is_condition or len(equation.sides) < 2:  # noqa: PLR2004
-            raise _Unjudged("other model", "it is no equation")
-        if equation.nearly is not None:
-            raise _Unjudged("not read", "it holds only nearly, by its sign")
-        if len(equation.sides) > MOST_SIDES:
-            raise _Unjudged("not read", f"it has more than {MOST_SIDES} sides")
+        equation = _exact(item.equation)
         notation = self.notation(model, equation)
         self.check_letters(equation, model, notation)
         rows, missed = _read_sides(equation, notation)
+        missed += [_Unjudged("not read", NEARLY)] if equation is not item.equation else []
         sides = rows[0]
-        known = {*notation.names.values()} - {s.name for s, e in self.definitions.items() if e is equation}
+        known = {*notation.names.values()} - {
+            s.name for s, e in self.definitions.items() if e is item.equation
+        }
         claims = [claim for row in rows for claim in _claims(row, model, known)]
         number_of = self.models.index(model)
         for pair in model.transfer_functions:  # H = X/F = ... says what H is, also where it comes again
@@ -475,6 +473,20 @@ def _labelled(found: Sequence[PrintedEquation], labels: Sequence[tuple[int, str]
         own = [name for at, name in labels if starts[i] <= at < end or (i == 0 and at < starts[0])]
         only = labels[0][1] if len(labels) == 1 else ""
         yield _Item(equation, own[0] if own else only)
+
+
+def _exact(equation: PrintedEquation) -> PrintedEquation:
+    r"""Return an equation without what only holds nearly, such as the last side of ``G = a \approx b``."""
+    if equation.is_condition or len(equation.sides) < 2:  # noqa: PLR2004
+        raise _Unjudged("other model", "it is no equation")
+    if len(equation.sides) > MOST_SIDES:
+        raise _Unjudged("not read", f"it has more than {MOST_SIDES} sides")
+    if equation.nearly is None:
+        return equation
+    sides = tuple(side for side in equation.sides if side[0].span.start < equation.nearly.start)
+    if len(sides) < 2:  # noqa: PLR2004
+        raise _Unjudged("not read", NEARLY)
+    return equation._replace(sides=sides)
 
 
 def _read_sides(

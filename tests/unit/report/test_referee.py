@@ -312,3 +312,12 @@ def test_a_frequency_in_a_definition_alone_is_the_laplace_variable():
     """
     paper = r"$$ \frac{Y(j\omega)}{U(j\omega)} = \frac{1}{1 + q^2}, \quad q^2 = R^2C^2\omega^2 $$"
     assert judged(loads(spec), paper)[0].verdict == "equal"
+
+
+def test_sides_before_a_sign_of_nearness_are_judged():
+    ((found, reason),) = verdicts(r"\frac{Y}{U} = \frac{1}{RCs + 1} \approx \frac{1}{RCs}")
+    assert (found, reason) == (
+        "equal",
+        "one of its sides is not judged: it holds only nearly, by its sign",
+    )
+    assert verdicts(r"\frac{Y}{U} \approx \frac{1}{RCs + 1}")[0][0] == "not read"
