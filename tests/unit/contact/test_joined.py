@@ -72,6 +72,18 @@ def test_a_file_without_a_port_to_join_is_refused(tool, change, said):
         loads(FORCE_LOOP).contact("touch", "tool.toml")
 
 
+def test_a_machine_whose_force_follows_a_point_of_a_member_is_refused(tool):
+    stay = (
+        'stay = { type = "string", between = ["x_touch", "ground"], N = "9 N", rhoA = "1 g/m", l = "0.5 m" }'
+    )
+    text = TOOL.replace("[elements]", f"[elements]\n{stay}").replace(
+        "double*s*x_touch", "double*s*stay.y(0.2)"
+    )
+    (tool / "tool.toml").write_text(text, encoding="utf-8")
+    with pytest.raises(UsageError, match="quantities at points of members"):
+        loads(FORCE_LOOP).contact("touch", "tool.toml")
+
+
 def test_ports_that_move_differently_are_refused(tool):
     turning = TOOL.replace('"spring", between', '"torsion_spring", between').replace('"mass"', '"inertia"')
     turning = (

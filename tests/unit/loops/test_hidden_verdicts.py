@@ -309,7 +309,8 @@ def test_a_hidden_beam_without_damping_leaves_a_loop_stable_and_is_named() -> No
     (bound,) = pipeline.derive_for_roots(model, [("Y", "r")])
     found = [pipeline.roots(bound).verdict, of_model.stability(model, StabilityOptions("K")).verdict]
     assert {(v.word, v.hidden) for v in found} == {("stable", "hidden poles on the imaginary axis")}
-    assert over(model, ("EI", "0.5", "2")) == "stable"
+    followed = stability_over(model, StabilityOptions(over=("EI",), ranges=(("EI", "0.5", "2"),))).verdict
+    assert (followed.word, followed.hidden) == ("stable", "hidden poles on the imaginary axis")
 
 
 def test_the_modes_of_a_hidden_beam_are_listed_beside_all_poles_of_the_loop() -> None:
