@@ -20,9 +20,10 @@ from math import inf
 
 from flint import acb, arb, arb_poly
 
+from symflex.algebra import Factored, by_powers
 from symflex.analysis.norms.axis import MOST_PIECES, NARROWEST, RATIO, MatrixOnAxis, TaylorForm
-from symflex.analysis.norms.expanded import BITS, Expanded, expanded
-from symflex.balls import Branching, Open, Part, branch, halved, precision, settled
+from symflex.analysis.norms.expanded import BITS, Expanded, expanded, is_delay
+from symflex.balls import Branching, Open, Part, at_centre, branch, halved, precision, settled
 from symflex.errors import BudgetError, Diagnostic, Source, UncertifiedError
 from symflex.expressions.format import number_text
 from symflex.loops.axis import pieces
@@ -43,6 +44,9 @@ PRINTED = 12  # of a rational function's norm
 FURTHER, STEP = 45, 2.0  # frequencies from which on a bound is tried
 MODES = 8  # whose poles lie in the disc about 0, at first
 SLOW, SLOW_TAIL = -1.5, 1e-3  # power above which so large a share is left beyond the last frequency
+TURNING_TAIL = 2e-2  # the same beside delays
+LARGEST_SHARE = 2**BITS  # of an integral on a piece that counts as known
+ANYWHERE = (1.1, 2.3, 3.7)  # frequencies [rad/s] at which a sum of delays is not 0, most likely
 SLOWEST = -0.5  # power of the frequency below which a square has an integral
 
 Rows = Sequence[Sequence[AnyBoundFunction]]
@@ -146,10 +150,32 @@ def _square(bound: AnyBoundFunction, noise: BoundTransferFunction | None) -> tup
         _check_stable(shaper)
     if function.radius == inf and (shaper is None or shaper.radius == inf):
         return _rational([f.bound for f in (function, shaper) if f is not None]), function.reasons
+    if shaper is None and _stays(function.bound):
+        raise InfiniteError(f"{bound.name} does not fall off as the frequency grows")
     matrix = MatrixOnAxis(((function,),))
     total, reasons = integrated(matrix, shaper)
     with precision(BITS):
         return total / arb.pi(), reasons
+
+
+def _stays(bound: AnyBoundFunction) -> bool:
+    """Tell whether a sum of delays over a polynomial is proved not to fall off as the frequency grows.
+
+    The coefficient of its highest power of s is a sum of turning numbers, which does not tend to 0 once it
+    has been anything else (Bohr 1925).
+    """
+    if not isinstance(bound, BoundTransferFunction) or any(
+        bound.den.depends_on(name) for name in bound.kernels.generators
+    ):
+        return False
+    ring = bound.ratio.ring
+    above, below = (by_powers(ring, side.expand()) for side in (bound.num, bound.den))
+    if not all(is_delay(kernel, ring) for kernel in bound.kernels.kernels) or max(above) < max(below):
+        return False
+    with precision(BITS):
+        leading, kernels = Factored.polynomial(ring, above[max(above)]), bound.kernel_values()
+        values = (kernels.value(leading, kernels.at(acb(0, omega))) for omega in ANYWHERE)
+        return any(not value.contains(0) for value in map(at_centre, values))
 
 
 def _check_stable(function: Expanded) -> None:
@@ -204,7 +230,9 @@ class _Integral:
         low, high = ends
         with precision(BITS):
             form = self._form(low, high, in_disc=in_disc)
-            share = _Share(ends, _over(form, arb(high - low) / 2) if form.is_finite else arb("inf"), in_disc)
+            value = _over(form, arb(high - low) / 2) if form.is_finite else arb("inf")
+            # Beside larger ones the sum of all, from which they are taken again, would lose its digits.
+            share = _Share(ends, value if value.rad() < LARGEST_SHARE else arb("inf"), in_disc)
         self._count(share, 1)
         return share
 
@@ -218,7 +246,7 @@ class _Integral:
         if not share.value.is_finite():
             self.open += times
             return
-        with precision(BITS):  # what is added is taken away again
+        with precision(3 * BITS):  # what is added is taken away again
             self.total = (self.total + times * share.value.mid()).mid()
             self.off = (self.off + times * share.value.rad()).mid()
 
@@ -264,7 +292,7 @@ def integrated(
     if high == inf:
         end, tail = _tail(matrix, shaper, edge, integral.total)
         if tail > integral.total * integral.share_open:
-            integral.share_open = arb(SLOW_TAIL)
+            integral.share_open = arb(_slow_tail(matrix))
         if tail == inf:
             reasons += (f"above {short_hertz(arb(edge))} Hz no bound on the magnitude is known",)
             end, tail = edge, arb(0)
@@ -288,6 +316,13 @@ def integrated(
         return total + arb(0).union(tail), reasons
 
 
+def _slow_tail(matrix: MatrixOnAxis) -> float:
+    """Return how large a share may be left beyond the last frequency: every turn of a delay costs pieces."""
+    bounds = (f.bound for f in matrix.every if f.radius < inf and f.bound.is_reduced)
+    turns = any(is_delay(k, b.ratio.ring) for b in bounds for k in b.kernels.kernels)
+    return TURNING_TAIL if turns else SLOW_TAIL
+
+
 def _tail(matrix: MatrixOnAxis, shaper: Expanded | None, edge: float, total: arb) -> tuple[float, arb]:
     """Return a frequency from which on the integral is next to nothing, and what it is at most."""
     known: list[tuple[float, arb]] = []
@@ -307,7 +342,7 @@ def _tail(matrix: MatrixOnAxis, shaper: Expanded | None, edge: float, total: arb
                 continue
             rate = -2 * arb(power) - 1
             known.append((omega, (most**2 * arb(omega) ** -rate / rate).upper()))
-            share = SLOW_TAIL if power > SLOW else arb(10) ** -(DIGITS + 1)
+            share = _slow_tail(matrix) if power > SLOW else arb(10) ** -(DIGITS + 1)
             if known[-1][1] < total * share:
                 return known[-1]
     return min(known, key=lambda each: float(each[1])) if known else (edge, arb("inf"))

@@ -20,7 +20,7 @@ from math import inf, pi
 
 from flint import acb, arb
 
-from symflex.algebra import LAPLACE, NO_KERNELS, degree_in
+from symflex.algebra import LAPLACE, NO_KERNELS, Kernel, Ring, degree_in
 from symflex.analysis.rational.laurent import PrincipalPart, expand_at_zero, residues_at
 from symflex.balls import UndecidedError, at_centre, covered, precision
 from symflex.budget import spend
@@ -114,21 +114,24 @@ def turning_delays(functions: Sequence[Sequence[Expanded]]) -> tuple[tuple[arb, 
     return tuple(rows) if any(x != 0 for row in rows for x in row) else ()
 
 
+def is_delay(kernel: Kernel, ring: Ring) -> bool:
+    """Tell whether a kernel is ``exp(-s*T)``, whose size is 1 on the axis."""
+    s, shift = ring.context.gen(0), kernel.dispersion.shift.factors
+    return kernel.function == "exp" and all(e == 1 if f == s else not degree_in(f, 0) for f, e in shift)
+
+
 def without_delay(bound: AnyBoundFunction) -> tuple[AnyBoundFunction, arb]:
     """Return a function without the delay of all of it, which changes no magnitude, and the delay [s]."""
     total = arb(0)
     if not bound.is_reduced:
         return bound, total
-    s, ring = bound.ratio.ring.context.gen(0), bound.ratio.ring
-    delays = []
+    ring, delays = bound.ratio.ring, []
     with precision(BITS):
         evaluator = bound.kernel_values() if bound.kernels else None
         for kernel in bound.kernels.kernels:
-            shift, generator = kernel.dispersion.shift.factors, ring.generator(kernel.generator)
+            generator = ring.generator(kernel.generator)
             exponent = bound.ratio.exponent_of(generator)
-            if kernel.function != "exp" or not exponent or evaluator is None:
-                continue
-            if all(e == 1 if f == s else not degree_in(f, 0) for f, e in shift):
+            if exponent and evaluator is not None and is_delay(kernel, ring):
                 delays.append(generator)
                 named = evaluator.generators_at(acb(1))
                 rate = at_centre(evaluator.value(kernel.dispersion.shift * kernel.length, named))

@@ -98,3 +98,17 @@ def test_a_matrix_has_the_norm_of_a_lyapunov_equation():
 
 def h2_of(a, b, row):
     return solve_continuous_lyapunov(a, -b @ b.T)[row, row]
+
+
+def test_delays_beside_a_slow_end_are_integrated():
+    # e^-t - e^-2(t - T) from t = T on: its square has the integral 1/2 + 1/4 - 2 e^-T/3.
+    norm = h2("1/(s + 1) - exp(-0.1*s)/(s + 2)")
+    assert norm.certified
+    assert norm.value.contains((0.75 - 2 * (arb(-1) / 10).exp() / 3).sqrt()) and norm.value.rad() < 0.01
+
+
+def test_a_sum_of_delays_that_does_not_fall_off_has_no_end():
+    for text in ("(1 + exp(-s))", "(1/(s + 1) + exp(-s))"):
+        norm = h2(text)
+        assert not norm.value.is_finite()
+        assert "does not fall off" in norm.because
