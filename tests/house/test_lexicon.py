@@ -41,7 +41,7 @@ LEXICON = {
         "delay",
         {
             "docs/glossary.md": "the synonym, once",
-            "docs/spec-language.md": "the synonym, once",
+            "docs/blocks.md": "the synonym, once",
             "symflex/library/blocks.py": "the synonym, once",
             "docs/i-have-i-want.md": "what others call a delay",
         },
