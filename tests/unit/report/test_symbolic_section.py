@@ -1,4 +1,4 @@
-"""What a report says in symbols is set as mathematics, with its conditions."""
+"""Symbolic answers in a report are set as mathematics, with their conditions."""
 
 from symflex.report.document import Mathematics
 from symflex.report.sections.symbolic import symbolic_section
