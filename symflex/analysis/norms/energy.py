@@ -90,7 +90,7 @@ class H2Norm(Printed):
         lines += [f"  not proved: {reason}" for reason in self.reasons]
         decimals = real_json(self.value, 12)
         if decimals is None:
-            lines.append(f"  H2 norm infinite: {self.because}")
+            lines.append(f"  H2 norm infinite: {self.because}" if self.because else "  H2 norm not known")
         else:
             lines.append("  H2 norm {value}, radius {radius}".format(**decimals))
             shaped = f" through {self.noise}" if self.noise else ""
@@ -154,6 +154,8 @@ def _square(bound: AnyBoundFunction, noise: BoundTransferFunction | None) -> tup
         raise InfiniteError(f"{bound.name} does not fall off as the frequency grows")
     matrix = MatrixOnAxis(((function,),))
     total, reasons = integrated(matrix, shaper)
+    if not total.rad() < abs(total.mid()):
+        reasons += ("no digit of the integral is known",)
     with precision(BITS):
         return total / arb.pi(), reasons
 
