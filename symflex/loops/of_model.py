@@ -183,7 +183,7 @@ def of_rational(
         found = _of_equations(model, name, {}, search)
         if found is not None and found.certified:
             return found
-        loop = characteristic_loop(model, name, what="stability over a parameter")
+        loop = characteristic_loop(model, name, what="stability of a loop")
         if isinstance(loop, Loop) and (loop.functions is not None or not (has_pairs or _is_quick(loop))):
             return found
         written = search(loop)

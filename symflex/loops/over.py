@@ -93,7 +93,7 @@ def stability_over(
     if exact is not None and exact.nominal is None:  # of an angle in degrees
         exact = replace(exact, nominal=nominal[0])
         exact = replace(exact, margins=Margins(gain_margins(exact)))
-    if exact is not None and exact.certified:
+    if exact is not None and (exact.certified or model.root is not None):  # boxes serve no roots of s
         return exact.of_parameter
     function = characteristic(model, names, limits, has_complex_waves=True)
     _check_dependence(function, parameters)

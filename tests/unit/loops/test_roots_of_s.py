@@ -33,6 +33,13 @@ def test_a_half_infinite_bar_has_the_ultimate_gain_exp_pi():
     assert [b.frequencies_hz[0] for b in found.boundaries] == pytest.approx([pi, 9 * pi], rel=1e-12)
 
 
+def test_a_gain_beside_a_root_of_s_is_answered_as_any_parameter_is():
+    bar = loads(LOOP.format(plant="K*exp(-sqrt(s))", parameters="K = 3"))
+    found = bar.stability(over="K", limits=(0, 1000))
+    assert found.certified
+    assert [float(b.gain) for b in found.boundaries] == pytest.approx([exp(pi)], rel=1e-12)
+
+
 def test_a_fractional_controller_has_the_gains_at_which_a_polynomial_s_roots_enter_a_sector():
     # With r = sqrt(s): (r^2/2 + 1)^3 r + k_p r + k_i has roots within 45 degrees of the real axis.
     cube = np.poly([-2.0] * 3) / 8
