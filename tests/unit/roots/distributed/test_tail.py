@@ -19,6 +19,7 @@ from symflex.roots.distributed.far_out import (
     NO_FORMULA,
     NO_LOSS,
     SECTORS,
+    FunctionFarOut,
     _at_infinity,
     _dominant,
     _pair,
@@ -285,3 +286,25 @@ def test_a_term_that_may_be_zero_outweighs_nothing():
         assert not _dominant({LEVEL: {Fraction(1): acb(arb(0, 1))}}, REAL, arb(10))
         assert not _dominant({LEVEL: powers(p0=0)}, REAL, arb(10))
         assert not _dominant({LEVEL: {Fraction(1): acb(arb(0, 1)), Fraction(0): acb(100)}}, REAL, arb(10))
+
+
+@pytest.mark.parametrize(
+    ("formula", "angle", "lead"),
+    [
+        ("s*(2*s + exp(-s))^2/(3*s + exp(-s))^3", 0, 4 / 27),
+        ("1/(3*s + exp(-s))", -pi / 2, 1 / 3),
+        ("-s/(2 + exp(-s))^2", -pi / 2, None),
+        ("(exp(-s) - 2*s)^2/s", pi / 2, 4),
+        ("(exp(-s) - 2*s)^3/(s + exp(-s))", 0, -8),
+    ],
+)
+def test_the_angle_far_out_on_the_axis_is_that_of_the_terms_that_outweigh_the_others(formula, angle, lead):
+    text = f'symflex = 1\ninputs.u = {{}}\noutputs.y = "({formula})*u"\n'
+    (function,) = pipeline.derive_bound(pipeline.loads(text), [("y", "u")])
+    far = FunctionFarOut.of(function, SECTORS)
+    with precision(128):
+        found, off = far.angle_on_axis(1e6)
+        turned = found - angle
+        assert abs(turned - 2 * arb.pi() * round(float(turned) / (2 * pi))) < 1e-12
+    assert off < (2 if lead is None else 1e-5)
+    assert lead is None or float(far.size(1e6).lead.real) == pytest.approx(lead)
