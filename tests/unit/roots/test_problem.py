@@ -5,7 +5,7 @@ from flint import fmpz_mpoly_ctx
 
 from symflex.errors import ModelError, UncertifiedError
 from symflex.roots import PolynomialInS, RootProblem, find_polynomial_roots
-from symflex.roots.problem import split
+from symflex.roots.problem import _Ring, split
 from tests.unit.roots.root_problems import problem, with_pi, with_root_of_two
 
 
@@ -48,3 +48,10 @@ def test_the_even_part_holds_axis_pairs_and_mirrored_roots_only():
     # (s^2 + 9)(s - 2)(s + 2)(s + 5)
     coefficients = [-180, -36, 25, 5, 5, 1]
     assert parts_of(problem(*coefficients)) == [((-36, 5, 1), 1, True), ((5, 1), 1, False)]
+
+
+def test_a_mirror_image_changes_the_signs_of_odd_powers_of_s_alone():
+    context = fmpz_mpoly_ctx.get(["s", "c0"], "lex")
+    s, c = context.gens()
+    image = _Ring(context, ()).reflect(s**3 * c + 2 * s**2 * c**3 + 5 * s + 7 * c)
+    assert image == 2 * s**2 * c**3 + 7 * c - s**3 * c - 5 * s
