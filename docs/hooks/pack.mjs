@@ -26,6 +26,7 @@ ask("formula", pair=pair)
 ask("drawing")
 ask("command", arguments=["roots", "--tf", name, "--json"])
 ask("response", pair=pair, frequencies=[1.0])
+ask("command", arguments=["respond", "--tf", name, "--json"])
 ask("command", arguments=["stability", "--gain", model["gain"]])
 ask("command", arguments=["derive", "--tf", name, "--format", "latex"])
 places = [getattr(module, "__file__", None) or "" for module in sys.modules.values()]

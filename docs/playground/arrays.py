@@ -9,6 +9,7 @@ here raises the error of a library that is not installed, which commands report.
 """
 
 import cmath
+import contextlib
 import math
 import sys
 from itertools import accumulate, product
@@ -50,7 +51,7 @@ int64 = int32 = int16 = intp = _Type("int64", "i", int, 8)
 float64 = float32 = _Type("float64", "f", float, 8)
 complex128 = _Type("complex128", "c", complex, 16)
 TYPES = {"b": bool_, "i": int64, "f": float64, "c": complex128}
-_OF_PYTHON = {bool: "b", int: "i", float: "f", complex: "c"}
+_OF_PYTHON = {bool: "b", int: "i", float: "f", complex: "c", object: "f"}  # of objects, only none of them
 
 
 def _kind_of(dtype):
@@ -954,7 +955,7 @@ def roots(coefficients):
     return array([*guess, *([0j] * zeros_at_0)], complex)
 
 
-class errstate:
+class errstate(contextlib.ContextDecorator):
     """Says nothing in any case."""
 
     def __init__(self, **_):

@@ -1,6 +1,6 @@
 // The page: a model on the left, and on the right its formula, roots and plots. Nothing leaves the browser.
 import { Editor } from "./editor.js";
-import { bode, drawn, rootMap } from "./plots.js";
+import { bode, drawn, rootMap, step as stepPlot } from "./plots.js";
 import { model as ofLink, link } from "./link.js";
 
 const here = (id) => document.getElementById(id);
@@ -135,8 +135,8 @@ function rootTable(roots, name) {
     const upper = roots.filter((r) => !r.im.startsWith("-"));
     const rows = upper.slice(0, 40).map((r) => {
         const isReal = r.is_real || Number(r.im) === 0;
-        const value = isReal ? digits(r.re) : `${Number(r.re) ? `${digits(r.re)} ` : ""}± ${digits(r.im)} j`;
-        const zeta = r.damping_ratio === null ? "" : digits(r.damping_ratio, 5);
+        const value = isReal ? digits(r.re) : `${Number(r.re) ? `${digits(r.re, 6)} ` : ""}± ${digits(r.im, 6)} j`;
+        const zeta = r.damping_ratio === null ? "" : digits(r.damping_ratio, 4);
         const times = r.multiplicity > 1 ? ` ×${r.multiplicity}` : "";
         return made("tr", {}, ...[value + times, digits(r.frequency_hz, 6), zeta, r.radius === "0" ? "exact" : digits(r.radius, 2)].map((c) => made("td", {}, c)));
     });
@@ -195,7 +195,7 @@ function run() {
     return settled;
 }
 
-const PANELS = ["drawing", "formula", "roots", "bode", "stability", "code"];
+const PANELS = ["drawing", "formula", "roots", "bode", "step", "stability", "code"];
 const fade = (isStale) => PANELS.forEach((id) => here(id).classList.toggle("stale", isStale));
 
 async function work(own) {
@@ -236,6 +236,7 @@ async function work(own) {
         await showResponse(step, show, pair, model.band, located.out ? JSON.parse(located.out) : null);
         await showStability(command, show, model);
         await showCode(command, show, pair);
+        await showStep(command, show, pair, located.out ? JSON.parse(located.out) : null);
     }
     results.text = text;
     fade(false);
@@ -284,6 +285,34 @@ async function showResponse(step, show, pair, band, map) {
     const { found, err } = await step(`Evaluating ${pair}`, "response", { pair: pair.split("/"), frequencies: hertz });
     const plot = found && bode(hertz, found, "");
     show("bode", plot || refusal(err || "the function is zero"));
+}
+
+/** Measures of a step response: names as tables of controls have them, and what a value is multiplied by. */
+const MEASURES = {
+    final: ["final value"], peak: ["peak"], peak_time: ["peak time", "s"], overshoot: ["overshoot", "%", 100],
+    rise_time: ["rise time", "s"], settling_time: ["settling time", "s"],
+};
+
+const GROWTHS = 5; // times that the fastest unstable mode grows by e before the plot ends
+
+async function showStep(command, show, pair, map) {
+    const growth = Math.max(0, ...(map?.poles ?? []).map((root) => Number(root.re)));
+    const until = growth ? ["--until", `${(GROWTHS / growth).toPrecision(2)} s`] : [];
+    const options = ["respond", "--tf", pair, ...until, "--json"];
+    const { out, err } = results.step = { options, ...await command(`Proving the step response of ${pair}`, ...options) };
+    if (!out) return show("step", refusal(firstError(err)));
+    const { certified, time, value, unit: said, step_info: measures } = JSON.parse(out);
+    const unit = said === "1" ? "" : said;
+    const rows = Object.entries(MEASURES).filter(([key]) => measures?.[key]).map(([key, [name, own, factor = 1]]) => {
+        const { value, radius } = measures[key];
+        const cells = [name, `${digits(factor * value)} ${own ?? unit}`, digits(factor * radius, 2)];
+        return made("tr", {}, ...cells.map((c) => made("td", {}, c)));
+    });
+    const head = made("tr", {}, ...["", "value", "within"].map((c) => made("th", { scope: "col" }, c)));
+    show("step",
+        made("span", { class: `verdict ${certified ? "good" : ""}` }, certified ? "every value is proved" : "not certified"),
+        stepPlot(time, value.map(Number), unit),
+        ...(rows.length ? [made("table", {}, made("thead", {}, head), made("tbody", {}, ...rows))] : []));
 }
 
 async function showStability(command, show, model) {

@@ -1,4 +1,4 @@
-// Drawings in SVG: a Bode plot and a map of poles and zeros.
+// Drawings in SVG: a Bode plot, a step response, a map of poles and zeros, and the drawing of a model.
 
 const SVG = "http://www.w3.org/2000/svg";
 
@@ -39,13 +39,30 @@ function path(points, jump) {
     return said;
 }
 
+/** Angles without jumps of a turn; as they are where they jump by half a turn, up at zeros and down at poles. */
+function continuous(angles) {
+    const found = [angles[0]];
+    for (const angle of angles.slice(1)) {
+        const away = angle - found.at(-1);
+        const next = away - 360 * Math.round(away / 360);
+        if (Math.abs(next) > 150) return angles;
+        found.push(found.at(-1) + next);
+    }
+    return found;
+}
+
 export function bode(hertz, values, unit) {
     const left = 52, right = 20, width = 440, each = 135, between = 18, top = 12;
     const plot = frame(width, top + 2 * each + between + 40, "Bode plot: magnitude and phase over frequency");
     const [low, high] = [Math.log10(hertz[0]), Math.log10(hertz.at(-1))];
     const across = (f) => left + ((Math.log10(f) - low) / (high - low)) * (width - left - right);
     const size = values.map(([re, im]) => Math.log10(Math.hypot(re, im)));
-    const angle = values.map(([re, im]) => (Math.atan2(im, re) * 180) / Math.PI);
+    const angle = continuous(values.map(([re, im]) => (Math.atan2(im, re) * 180) / Math.PI));
+    const seen = angle.filter((v, i) => Number.isFinite(size[i]));
+    const turns = [90, 180, 360, 720, 1800, 3600].find((turn) => (Math.max(...seen) - Math.min(...seen)) / turn <= 5) ?? 36000;
+    const [lowest, highest] = [Math.floor(Math.min(...seen) / turns) * turns, Math.ceil(Math.max(...seen) / turns) * turns];
+    const angles = [];
+    for (let v = lowest; v <= Math.max(highest, lowest + turns); v += turns) angles.push(v);
     const finite = size.filter(Number.isFinite);
     if (!finite.length) return null;
     const bottomDecade = Math.floor(Math.min(...finite)), topDecade = Math.max(Math.ceil(Math.max(...finite)), bottomDecade + 1);
@@ -54,7 +71,7 @@ export function bode(hertz, values, unit) {
     for (let d = bottomDecade; d <= topDecade; d += step) decades.push(d);
     const rows = [
         [top, bottomDecade, topDecade, decades, size, Infinity, (d) => `1e${d}`, unit ? `|G| [${unit}]` : "|G|"],
-        [top + each + between, -180, 180, [-180, -90, 0, 90, 180], angle, 180, (d) => `${tidy(d)}°`, "phase"],
+        [top + each + between, lowest, angles.at(-1), angles, angle, 180, (d) => `${tidy(d)}°`, "phase"],
     ];
     for (const [y0, from, to, marked, data, jump, say, name] of rows) {
         const up = (v) => y0 + each * (1 - (v - from) / (to - from));
@@ -76,6 +93,32 @@ export function bode(hertz, values, unit) {
     for (let d = Math.ceil(low); d <= high; d++)
         plot.append(text(across(10 ** d), foot + 16, tidy(10 ** d), { "text-anchor": "middle" }));
     plot.append(text((left + width - right) / 2, foot + 34, "frequency [Hz]", { "text-anchor": "middle", class: "quiet" }));
+    return plot;
+}
+
+export function step(times, values, unit) {
+    const width = 440, height = 220, left = 64, right = 20, top = 12, bottom = 40;
+    const plot = frame(width, height, "Step response over time");
+    const finite = values.filter(Number.isFinite);
+    const [least, most] = [Math.min(0, ...finite), Math.max(0, ...finite)];
+    const air = (most - least) * 0.06 || 1;
+    const [from, to, end] = [least && least - air, most + air, times.at(-1)];
+    const x = (t) => left + (t / end) * (width - left - right);
+    const y = (v) => top + ((to - v) / (to - from)) * (height - top - bottom);
+    for (const mark of marks(from, to, 5)) {
+        plot.append(element("path", { class: "grid-line", d: `M${left} ${y(mark)}H${width - right}` }));
+        plot.append(text(left - 6, y(mark) + 4, tidy(mark), { "text-anchor": "end" }));
+    }
+    for (const mark of marks(0, end, 6)) {
+        plot.append(element("path", { class: "grid-line", d: `M${x(mark)} ${top}V${height - bottom}` }));
+        plot.append(text(x(mark), height - bottom + 16, tidy(mark), { "text-anchor": "middle" }));
+    }
+    plot.append(element("path", { class: "axis", d: `M${left} ${y(0)}H${width - right}` }));
+    plot.append(element("rect", { class: "frame", x: left, y: top, width: width - left - right, height: height - top - bottom }));
+    const points = values.map((v, i) => (Number.isFinite(v) ? [x(times[i]), y(v), v] : null));
+    plot.append(element("path", { class: "curve", d: path(points, Infinity) }));
+    plot.append(text((left + width - right) / 2, height - 6, "time [s]", { "text-anchor": "middle", class: "quiet" }));
+    if (unit) plot.append(text(left + 8, top + 15, `[${unit}]`, { class: "quiet" }));
     return plot;
 }
 

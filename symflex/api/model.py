@@ -187,12 +187,16 @@ class Model:
         return repr(self.resolved)
 
     def _repr_html_(self) -> str:
-        from symflex.drawing import LARGEST_DRAWING, drawing_of, render_drawing  # only notebooks ask
         from symflex.print.html import model_html
 
-        if len(self.resolved.elements) > LARGEST_DRAWING:
+        try:
+            from symflex.drawing import LARGEST_DRAWING, drawing_of, render_drawing  # only notebooks ask
+
+            if len(self.resolved.elements) > LARGEST_DRAWING:
+                return model_html(self.resolved)
+            drawn = render_drawing(drawing_of(self.resolved), "svg").decode()
+        except ImportError:  # matplotlib, which a notebook in a browser may lack
             return model_html(self.resolved)
-        drawn = render_drawing(drawing_of(self.resolved), "svg").decode()
         # Without its own style, which would be that of the whole notebook.
         head, _, tail = drawn[drawn.index("<svg") :].partition("<style")
         return f"<div>{head}{tail.partition('</style>')[2]}</div>\n{model_html(self.resolved)}"

@@ -69,18 +69,17 @@ def show_response(spec: Specification, given: RespondOptions) -> int:
         response_from,
         response_text,
     )
-    from symflex.data.measurement.input_signal import ENDINGS, read_signal
     from symflex.roots.locate import as_quotient
 
     path = Path(given.record or given.to)
-    is_file = given.record is not None or path.suffix.lower() in ENDINGS
+    is_file = given.record is not None or _is_signal(path)
     _check_options(given, is_file=is_file)
     initial = read_settings(given.initial, "--initial")
     until = None if given.until is None else duration(given.until, "--until")
     model = spec.load()
     pair = first_pair(model, given.tf, "showing")
     record = _record(path, given) if given.record else None
-    signal = read_signal(path) if is_file and not record else None
+    signal = _signal(path) if is_file and not record else None
     (bound,) = pipeline.derive_for_roots(model, [pair], is_explained=True)
     if signal is not None:
         for said in (*signal.guesses, *_unit_said(signal.unit, "the input", bound.source.input)):
@@ -193,6 +192,21 @@ def _growth(known: PoleZeroMap | None) -> list[str]:
         return [f"the response grows without bound; the system is {known.verdict.sentence}"]
     motion = known.verdict.hidden_motion
     return [f"the system is {known.verdict.sentence}", *([motion] if motion else [])]
+
+
+def _is_signal(path: Path) -> bool:
+    """Tell whether this is a file, and no word such as step, for which nothing need be imported."""
+    if not path.suffix:
+        return False
+    from symflex.data.measurement.input_signal import ENDINGS
+
+    return path.suffix.lower() in ENDINGS
+
+
+def _signal(path: Path) -> InputSignal:
+    from symflex.data.measurement.input_signal import read_signal
+
+    return read_signal(path)
 
 
 def _check_options(given: RespondOptions, *, is_file: bool) -> None:

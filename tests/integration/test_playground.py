@@ -10,6 +10,7 @@ import json
 import os
 import threading
 import time
+from decimal import Decimal
 
 import pytest
 
@@ -113,6 +114,11 @@ def models():
     return {name: laid.example(name)["text"] for name in (*laid.EXAMPLES, *MORE)}
 
 
+def enclosed(response):
+    """Return values of a step response with their radii."""
+    return [(Decimal(v), Decimal(r)) for v, r in zip(response["value"], response["radius"], strict=True)]
+
+
 @pytest.mark.parametrize("name", [*hook().EXAMPLES, *MORE])
 def test_formulas_roots_and_latex_are_those_of_the_program(browser, tmp_path, monkeypatch, capsys, name):
     text = models()[name]
@@ -126,6 +132,10 @@ def test_formulas_roots_and_latex_are_those_of_the_program(browser, tmp_path, mo
         text, "derive", "--tf", pair
     )
     assert shown["roots"]["out"] == native(text, "roots", "--tf", pair, "--json")
+    here, there = json.loads(native(text, *shown["step"]["options"])), json.loads(shown["step"]["out"])
+    assert here["certified"] and there["time"] == here["time"]
+    for value, other in zip(enclosed(here), enclosed(there), strict=True):
+        assert abs(value[0] - other[0]) <= value[1] + other[1]  # words of 32 bits round balls elsewhere
     assert browser.run("document.querySelectorAll('#formula math').length") > 0
     assert browser.run("document.querySelectorAll('#bode path.curve').length") == 2
     assert browser.run("document.querySelectorAll('#drawing :is(path, text)').length") > 5
