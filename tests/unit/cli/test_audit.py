@@ -5,6 +5,7 @@ from tests.unit.audit.beam import COLOCATED, SCALE, TIP, VAUGHAN, specification
 KEYS = {
     "tf", "source", "verdict", "certified", "unread", "printed", "scale", "where", "ratio", "changes",
     "corrected", "derived", "counterexample", "agreed_points", "deviation", "laws", "units", "numeric",
+    "right_where",
 }  # fmt: skip
 
 
