@@ -14,11 +14,12 @@ Places where it may vanish are reported as not excluded.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from math import pi
+from typing import TypeVar
 
 from flint import acb
 
@@ -27,25 +28,42 @@ from symflex.algebra import LAPLACE
 from symflex.balls import precision
 from symflex.equations import Equations
 from symflex.matrices.constrained import driven_at_once, imposed
-from symflex.matrices.matrix_roots import DecouplingZero, MatrixRoots, directions, matrix_name
+from symflex.matrices.matrix_roots import DecouplingZero, MatrixRoots, directions, is_conjugate, matrix_name
 from symflex.matrices.system_matrix import SystemMatrix, independent, is_regular
 from symflex.model import Model, with_numbers
 from symflex.model.along import is_tapered
-from symflex.roots import Band, Certificate, Everything, HiddenRoot, PoleZeroMap, Region, Root
+from symflex.roots import Band, Certificate, Everything, HiddenRoot, Modes, PoleZeroMap, Region, Root
 from symflex.roots.locate import locate
 from symflex.roots.passivity import EnergyProof, energy_proof
-from symflex.roots.pole_zero_map import AT_REST, NONE_ON_AXIS, StabilityVerdict, hidden_region, judge
+from symflex.roots.pole_zero_map import (
+    AT_REST,
+    COINCIDE,
+    NONE_ON_AXIS,
+    StabilityVerdict,
+    chosen,
+    hidden_region,
+    judge,
+    search_modes,
+)
 from symflex.roots.polynomial_roots import in_order
-from symflex.roots.root import count_roots, overlap
+from symflex.roots.root import count_roots, groups, overlap
 from symflex.transfer.derive import nested_transfer
 from symflex.transfer.of_model import assemble_sparse, derive_for_roots
 
+Rest = TypeVar("Rest")
 BEYOND = 1 + 1e-9  # how far beyond a root its mode is searched, relative to it
 RANK_BITS = 256  # of the matrix at a point, which proves its normal rank
 POINT = (0.37, 0.61)  # where that is, in abs(s) of the highest pole: far from all roots, most likely
 NOT_FULL = "the normal rank is not proved: more than this was not found"
 NOT_EXCLUDED = "a zero of a matrix that is not square, or not of full rank, is not excluded, and not proved"
 _EXAMINED = PoleZeroMap("", Everything(), (), (), (), Certificate("", 0, 0))  # nothing more is asked of poles
+
+
+@dataclass(frozen=True)
+class _Invariant:
+    entries: Sequence[Root]  # all invariant zeros
+    missed: Sequence[Root]  # hidden modes among them beyond those that are shown
+    reason: str | None  # why it is not proved which of them are hidden modes
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,33 +78,30 @@ class SearchedMatrix:
 
     def roots(self) -> MatrixRoots:
         """Return the roots in the region."""
-        modes = self._located(
-            driven_at_once(self.model, self.outputs, self.inputs),
-            self.region,
-            self.outputs,
-            _EXAMINED if self._is_passive else None,
-        )
-        poles, apart = self._apart(modes)
+        model = driven_at_once(self.model, self.outputs, self.inputs)
+        modes = self._located(model, self.region, self.outputs, _EXAMINED if self._is_passive else None)
+        modes, (poles, apart) = self._enough(modes, model, self.outputs, self._apart)
         hidden = [each.root for each in apart]
         pairs, is_proved = self._independent(max((float(root.size().mid()) for root in poles), default=1.0))
         searched, reasons = [modes], [modes.certificate.reason, None if is_proved else NOT_FULL]
-        entries: list[Root] = []
-        missed: list[Root] = []
+        entries: Sequence[Root] = ()
+        zeros: Sequence[Root] = ()
         if pairs:
             is_square = len(pairs) == len(self.outputs) == len(self.inputs)
             where = modes.region if is_square else hidden_region(modes.region, poles)
-            located = self._located(imposed(self.model, pairs), where, [y for y, _ in pairs], _EXAMINED)
+            model, read = imposed(self.model, pairs), [y for y, _ in pairs]
+            located, (zeros, found) = self._enough(
+                self._located(model, where, read, _EXAMINED),
+                model,
+                read,
+                lambda each: self._transmitted(each, len(pairs), hidden, is_square=is_square),
+            )
             searched.append(located)
-            entries = [*located.poles, *(h.root for h in located.hidden)]
-            if not is_square:
-                entries = [root for root in entries if not self._is_excluded(len(pairs), root)]
-            reasons.append(located.certificate.reason)
-            further = self._modes_up_to([root for root in entries if not _is_among(root, hidden)])
-            if further is not None:
-                reasons.append(further.certificate.reason)
-                missed = [z.root for z in self._apart(further)[1] if not _is_among(z.root, hidden)]
-            reasons.append(NOT_EXCLUDED if not is_square and _without(entries, [*hidden, *missed]) else None)
-        zeros = in_order(_merged(_without(entries, [*hidden, *missed])))
+            apart_from_zeros = [*hidden, *found.missed]
+            entries = [r for r in found.entries if _is_among(r, zeros) or _is_among(r, apart_from_zeros)]
+            reasons += [located.certificate.reason, found.reason]
+            reasons.append(NOT_EXCLUDED if not is_square and zeros else None)
+        zeros = in_order(_merged(zeros))
         verdict = self._verdict(modes, [*poles, *modes.unstable], hidden)
         located = PoleZeroMap.of(
             matrix_name(self.outputs, self.inputs),
@@ -112,24 +127,72 @@ class SearchedMatrix:
             directions(self._matrix, len(pairs), zeros),
         )
 
+    def _enough(
+        self,
+        first: PoleZeroMap,
+        model: Model,
+        read: Sequence[str],
+        split: Callable[[PoleZeroMap], tuple[Sequence[Root], Rest]],
+    ) -> tuple[PoleZeroMap, tuple[Sequence[Root], Rest]]:
+        """Return a map and its roots that the matrix has, from further out in place of those it has not."""
+        known, parts, wanted = first, split(first), first.region
+
+        def search(modes: int) -> int:
+            nonlocal known, parts
+            if not isinstance(wanted, Modes):
+                return 0
+            if modes > wanted.count:
+                more = self._located(model, Modes(modes), read, _EXAMINED)
+                if len(more.poles) == len(known.poles):
+                    return 0
+                known, parts = more, split(more)
+            is_all = all(_is_among(root, parts[0]) for root in known.poles)
+            shown = sum(group[0].multiplicity for group in groups(in_order(parts[0])))
+            return 0 if is_all else wanted.count - shown
+
+        if isinstance(wanted, Modes) and not search_modes(wanted.count, search):
+            certificate = replace(known.certificate, reason=COINCIDE)
+            return replace(first, certificate=certificate), parts
+        if known is first:
+            return first, parts
+        whole = replace(first, certificate=known.certificate, hidden=known.hidden)
+        return whole, (chosen(parts[0], wanted), parts[1])
+
+    def _transmitted(
+        self, located: PoleZeroMap, rank: int, hidden: Sequence[Root], *, is_square: bool
+    ) -> tuple[Sequence[Root], _Invariant]:
+        """Return the transmission zeros among the poles with outputs imposed, and all invariant zeros."""
+        entries = [*located.poles, *(h.root for h in located.hidden)]
+        if not is_square:
+            entries = [root for root in entries if not self._is_excluded(rank, root)]
+        further = self._modes_up_to([root for root in entries if not _is_among(root, hidden)])
+        missed = [] if further is None else [z.root for z in self._apart(further)[1]]
+        missed = [root for root in missed if not _is_among(root, hidden)]
+        reason = None if further is None else further.certificate.reason
+        return _without(entries, [*hidden, *missed]), _Invariant(entries, missed, reason)
+
     def _modes_up_to(self, roots: Sequence[Root]) -> PoleZeroMap | None:
         """Return all modes as far as those of some roots that inputs or outputs may miss reach; else nothing.
 
         Zeros may be shown that lie beyond the highest pole shown, and so beyond the hidden modes known.
         """
-        one_of_two = [root for root in roots if not (self._matrix.is_real and root.im < 0)]
-        unsure = [root for root in one_of_two if not self._is_reached(root)]
+        unsure = self._unsure(roots)
         if not unsure:
             return None
         highest = max(float(root.size().mid()) for root in unsure) / (2 * pi) * BEYOND
         model = driven_at_once(self.model, self.outputs, self.inputs)
         return self._located(model, Band(Fraction(0), Fraction(highest)), self.outputs, _EXAMINED)
 
-    def _is_reached(self, root: Root) -> bool:
-        """Tell whether it is proved that inputs move, and outputs show, all that moves at a root."""
+    def _unsure(self, roots: Sequence[Root]) -> list[Root]:
+        """Return roots, one of a conjugate pair, where inputs or outputs may miss a mode."""
+        one_of_two = [root for root in roots if not (self._matrix.is_real and root.im < 0)]
+        return [root for root in one_of_two if not all(self._reach(root))]
+
+    def _reach(self, root: Root) -> tuple[bool, bool]:
+        """Tell whether it is proved that inputs move, and that outputs show, all that moves at a root."""
         with precision(2 * root.working_bits()):
             values = self._matrix.on(root.enclosure())
-            return values.is_controllable and values.is_observable
+            return values.is_controllable, values.is_observable
 
     @cached_property
     def _energy(self) -> list[EnergyProof]:
@@ -166,10 +229,15 @@ class SearchedMatrix:
         )
 
     def _located(
-        self, model: Model, region: Region | None, read: Sequence[str], judged: PoleZeroMap | None
+        self,
+        model: Model,
+        region: Region | None,
+        read: Sequence[str],
+        judged: PoleZeroMap | None,
+        digits: int = 0,
     ) -> PoleZeroMap:
         (bound,) = derive_for_roots(model, [(model.outputs[0].name, model.inputs[0].name)])
-        located = locate(bound, region, self.digits, with_zeros=False, judged=judged)
+        located = locate(bound, region, digits or self.digits, with_zeros=False, judged=judged)
         return located if bound.is_reduced else self._without_powers_of_fields(located, read)
 
     def _without_powers_of_fields(self, located: PoleZeroMap, read: Sequence[str]) -> PoleZeroMap:
@@ -209,14 +277,15 @@ class SearchedMatrix:
     def _apart(self, modes: PoleZeroMap) -> tuple[list[Root], list[DecouplingZero]]:
         """Return the poles of the matrix, and what inputs or outputs of it all miss.
 
-        One input and one output see one of several modes in one place; all inputs may see the others.
+        One input and one output see one of several modes in one place; all inputs may see the others. What
+        all miss may be among the poles where the kernels of a quotient hide a factor that cancels.
         """
-        poles, apart = [*modes.poles], []
-        for each in modes.hidden:
+        missed = self._missed(modes)
+        poles = [root for root in modes.poles if not _is_among(root, missed)]
+        apart: list[DecouplingZero] = []
+        for each in (*modes.hidden, *(HiddenRoot(root, "coincident") for root in missed)):
             root, times = each.root, each.root.multiplicity
-            with precision(2 * root.working_bits()):
-                values = self._matrix.on(root.enclosure())
-                is_moved, is_seen = values.is_controllable, values.is_observable
+            is_moved, is_seen = self._reach(root)
             if is_moved and is_seen:
                 poles.append(root)
                 continue
@@ -225,6 +294,20 @@ class SearchedMatrix:
             both = inputs + outputs - times
             apart.append(DecouplingZero(root, inputs, outputs, both, each.cause, is_exact=is_exact))
         return _merged(poles), apart
+
+    def _missed(self, modes: PoleZeroMap) -> list[Root]:
+        """Return poles that inputs or outputs may all miss, looked at to twice the digits, as pairs are."""
+        # Beside a mode that is hidden, no rank tells whether another is in the same place.
+        hidden = [h.root for h in modes.hidden]
+        alone = [root for root in modes.poles if not (root.is_zero or _is_among(root, hidden))]
+        unsure = self._unsure(alone)
+        if not unsure:
+            return []
+        model = driven_at_once(self.model, self.outputs, self.inputs)
+        closer = self._located(model, modes.region, self.outputs, _EXAMINED, 2 * self.digits)
+        found = [*closer.poles, *(h.root for h in closer.hidden)]
+        both = [root for root in found if any(overlap(root, u) or is_conjugate(root, u) for u in unsure)]
+        return [root for root in both if not all(self._reach(root))]
 
     def _independent(self, size: float) -> tuple[list[tuple[str, str]], bool]:
         """Return pairs whose matrix is proved regular at a point, and whether no more are independent.

@@ -221,7 +221,10 @@ def roots_text(located: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
         more.append(("hidden", tuple(h.root for h in located.hidden if h.cause == cause), f", {meaning}"))
     if located.hides_more:
         lines.append(f"{INDENT}hidden modes are infinite in number, and not all are listed")
-    fewer = f", there are fewer than {located.region.number}" if isinstance(located.region, Mode) else ""
+    region = located.region
+    fewer = ""
+    if isinstance(region, Mode) and not located.hidden:
+        fewer = f", there are fewer than {region.number}"
     none = f"none{fewer}" if certificate.certified else "none found"
     for title, roots, meaning in [*tables, *(table for table in more if table[1])]:
         count = sum(root.multiplicity for root in roots) or none

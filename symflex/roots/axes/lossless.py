@@ -265,7 +265,8 @@ class LosslessSearch:
         """Return ln of a radius within which about so many modes lie, and how many do."""
         start = log(self.function.first_frequency)
         for aside in ASIDE:
-            z = self._place(2 * modes + self.order + aside, start) if modes > 0 else start + modes - 1 - aside
+            turns = 2 * modes + self.order + aside
+            z = self._place(turns, start) if modes > 0 else start + max(modes - 1, -DEPTH) - aside
             try:
                 return z, self.count(z) // 2
             except RootOnPathError:

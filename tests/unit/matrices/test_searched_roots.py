@@ -40,6 +40,21 @@ p = {}
 tip = "w(1)"
 middle = "w(1/2)"
 """
+MIRRORED = """
+symflex = 1
+[elements]
+one = { type = "beam", between = ["p", "q"], EI = 5, rhoA = 1, l = 0.5 }
+two = { type = "beam", between = ["q", "r"], EI = 5, rhoA = 1, l = 0.5 }
+left = { type = "spring", between = ["p.y", "ground"], k = 30 }
+right = { type = "spring", between = ["r.y", "ground"], k = 30 }
+middle = { type = "damper", between = ["q.y", "ground"], b = 1 }
+[inputs]
+F = { force = "q.y" }
+H = {}
+[outputs]
+Y = "q.y + 0.1*H"
+S = "p.y + r.y"
+"""
 
 
 def roots_of(model: Model, outputs: str = "", inputs: str = "", modes: int = 2) -> MatrixRoots:
@@ -86,6 +101,31 @@ def test_what_clears_the_equations_of_a_loaded_field_is_no_zero_at_rest() -> Non
     assert not any(root.is_zero for root in (*found.located.zeros, *found.located.poles))
     assert found.decoupling_zeros == ()
     assert found.located.verdict.hidden == ""
+
+
+def turned_in_the_middle() -> complex:
+    """Return the first antisymmetric mode of MIRRORED: half of it, pinned in the middle."""
+
+    def moment_free(x: mpmath.mpf) -> mpmath.mpf:
+        sine, sinh = mpmath.sin(x / 2), mpmath.sinh(x / 2)
+        shear = sine * mpmath.cosh(x / 2) - sinh * mpmath.cos(x / 2)
+        return 5 * x**3 * shear - 2 * 30 * sine * sinh
+
+    return complex(1j * mpmath.sqrt(5) * mpmath.findroot(moment_free, 2.4) ** 2)
+
+
+def test_modes_that_turn_the_middle_are_hidden_where_only_mirrored_motions_are_driven_and_read() -> None:
+    # H adds to Y without moving anything: no factor of the quotient cancels as it is written.
+    found = roots_of(model_of(MIRRORED))
+    first = next(each for each in found.decoupling_zeros if each.root.im > 0)
+    assert complex(first.root) == pytest.approx(turned_in_the_middle(), rel=1e-13)
+    shown = [complex(root) for root in (*found.located.poles, *found.located.zeros)]
+    assert min(abs(s - turned_in_the_middle()) for s in shown) > 1
+
+
+def test_as_many_modes_are_shown_as_are_asked_for_beside_hidden_ones() -> None:
+    found = roots_of(model_of(MIRRORED), modes=2)
+    assert sum(1 for pole in found.located.poles if pole.im > 0) == 2
 
 
 def test_of_two_filters_of_one_input_the_matrix_has_one() -> None:

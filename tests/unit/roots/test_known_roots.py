@@ -516,6 +516,35 @@ def test_a_mode_is_that_of_its_number():
             assert_are(shown.poles, [(mpc(0, findroot(equation, guess) ** power), 1)], DIGITS)
 
 
+HALVES_ON_SPRINGS = """
+symflex = 1
+[elements]
+one = { type = "beam", between = ["p", "q"], EI = 5, rhoA = 1, l = 0.5 }
+two = { type = "beam", between = ["q", "r"], EI = 5, rhoA = 1, l = 0.5 }
+left = { type = "spring", between = ["p.y", "ground"], k = 30 }
+right = { type = "spring", between = ["r.y", "ground"], k = 30 }
+middle = { type = "damper", between = ["q.y", "ground"], b = 1 }
+[inputs]
+F = { force = "q.y" }
+[outputs]
+Y = "q.y"
+"""
+
+
+def test_a_mode_is_found_by_its_number_where_the_estimate_of_turns_leads_away():
+    # With the middle held, the second mode is that of a half clamped there, with a spring at its end.
+    def at_the_end(x):
+        sine, cosine, cosh_ = sin(x / 2), cos(x / 2), cosh(x / 2)
+        sinh_ = tanh(x / 2) * cosh_
+        a, b = sinh_ + sine, -(cosh_ + cosine)  # no moment
+        shear = 5 * x**3 * (a * (sinh_ - sine) + b * (cosh_ + cosine))
+        return shear - 30 * (a * (cosh_ - cosine) + b * (sinh_ - sine))
+
+    expected = sqrt(mpf(5)) * findroot(at_the_end, mpf("3.95")) ** 2
+    shown = locate(bound(HALVES_ON_SPRINGS), Mode(2), DIGITS)
+    assert_are(shown.zeros, [(mpc(0, expected), 1)], DIGITS)
+
+
 def test_what_is_found_until_a_search_is_broken_off_is_right_and_is_not_called_complete():
     for name in BROKEN_OFF:
         case, ends = CASES[name], set()
