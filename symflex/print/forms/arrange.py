@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, cached_property, partial
-from itertools import accumulate, islice, product
+from itertools import accumulate, chain, islice, product
 from math import gcd, isqrt, prod
 from operator import add, neg, sub
 
@@ -145,6 +145,13 @@ class Arranger:
         polynomial = self.closed(polynomial)
         if len(polynomial) == 1 or not factored or len(polynomial) > FACTOR_LIMIT:
             return self._with_content(polynomial)
+        front, *pieces = self._pieces_of(polynomial, self._flat)
+        pieces.sort(key=lambda piece: {*names(piece)} != {Name("pi")})  # beside the number
+        return product_of([front, *pieces])
+
+    @staticmethod
+    def _pieces_of(polynomial: fmpz_mpoly, arrange: Callable[[fmpz_mpoly], Expression]) -> list[Expression]:
+        """Return a number, and irreducible factors whose leading coefficients are positive."""
         constant, factors = irreducible_factors(polynomial)
         sign = 1
         pieces: list[Expression] = []
@@ -152,9 +159,8 @@ class Arranger:
             positive = factor
             if int(factor.leading_coefficient()) < 0:
                 positive, sign = -factor, sign * (-1) ** exponent
-            pieces.append(power(self._flat(positive), exponent))
-        pieces.sort(key=lambda piece: {*names(piece)} != {Name("pi")})  # beside the number
-        return product_of([number(constant * sign), *pieces])
+            pieces.append(power(arrange(positive), exponent))
+        return [number(constant * sign), *pieces]
 
     def _with_content(self, polynomial: fmpz_mpoly) -> Expression:
         content = polynomial.term_content()
@@ -192,14 +198,56 @@ class Arranger:
         return min([min(tried, key=self._reading), *self._with_gain(polynomial)], key=length)
 
     def _with_gain(self, polynomial: fmpz_mpoly) -> Iterable[Expression]:
-        """Yield ``s*(s + a)*(s + b) + K``: what one symbol multiplies, after factors that are of s."""
-        terms = _terms(self.closed(polynomial)) if len(polynomial) <= FEW else {}
-        for i in range(1, len(self.ring.names) * (degree_in(polynomial, 0) > SECOND)):
-            others = {m: c for m, c in terms.items() if not m[i]}
-            if SHORT <= len(others) < len(terms):
-                _, factors = irreducible_factors(self.ring.context.from_dict(others))
-                if sum(e for f, e in factors if len(f) > 1 and degree_in(f, 0)) > 1:
-                    yield sum_of([self._group(others), self._group({m: terms[m] for m in terms if m[i]})])
+        """Yield ``s*(s + a)*(s + b) + K``: what symbols multiply, after factors that are of s."""
+        is_tried = len(polynomial) <= FEW and degree_in(polynomial, 0) > SECOND
+        terms = _terms(self.closed(polynomial)) if is_tried else {}
+        if not terms:
+            return
+        alone = [(i,) for i in range(1, len(self.ring.names))]
+        together = [e for c in self._gains_together(terms) for e in self._after_factors(terms, c)]
+        yield from together or chain.from_iterable(self._after_factors(terms, c) for c in alone)
+
+    def _after_factors(self, terms: dict[tuple[int, ...], int], chosen: Sequence[int]) -> list[Expression]:
+        """Return a sum with what some symbols multiply last, if the others multiply two factors of s."""
+        last = {m: c for m, c in terms.items() if any(m[i] for i in chosen)}
+        first = {m: c for m, c in terms.items() if m not in last}
+        if not SHORT <= len(first) < len(terms):
+            return []
+        _, factors = irreducible_factors(self.ring.context.from_dict(first))
+        if sum(e for f, e in factors if len(f) > 1 and degree_in(f, 0)) < SECOND:
+            return []
+        if len(chosen) == 1:
+            return [sum_of([self._group(first), self._group(last)])]
+        if max(m[0] for m in last) > max(m[0] for m in first):
+            return []
+        # Each factor as if it stood alone, as a numerator has some of them.
+        pieces = self._pieces_of(self.ring.context.from_dict(last), self.grouped_by_s)
+        made = sum_of([self._group(first), product_of(pieces)])
+        inner = [total for total in sums_in(made) if total is not made and power_of_s(total)]
+        is_plain = all(not power_of_s(n) for total in inner for n in sums_in(total) if n is not total)
+        return [made] if is_plain else []
+
+    def _gains_together(self, terms: dict[tuple[int, ...], int]) -> Iterable[tuple[int, ...]]:
+        """Yield gains of a controller: no two stand in a term, and all multiply the same factor of s."""
+        beside = {
+            i: self.ring.context.from_dict({(*m[:i], 0, *m[i + 1 :]): c for m, c in terms.items() if m[i]})
+            for i in range(1, len(self.ring.names))
+            if max(m[i] for m in terms) == 1
+        }
+        tried = set[tuple[int, ...]]()
+        for i, own in beside.items():
+            shared, group = own, [i]
+            for j, other in beside.items():
+                common = shared.gcd(other)
+                is_apart = not any(m[j] and any(m[k] for k in group) for m in terms)
+                if j != i and is_apart and len(common) > 1 and degree_in(common, 0):
+                    shared, group = common, [*group, j]
+            # One of them may be of the machine: the mass before l*s^2 + g.
+            for chosen in (group, *([j for j in group if j != left] for left in group)):
+                key = tuple(sorted(chosen))
+                if len(key) > 1 and key not in tried:
+                    tried.add(key)
+                    yield key
 
     def separated(self, polynomial: fmpz_mpoly, *, by_functions: bool) -> Expression:
         """Return a sum of coefficients times functions, collected by functions or by monomials."""

@@ -440,6 +440,12 @@ SHAPES = {
         "794.8728/(s^3 + 101.71*s^2 + 171*s + 794.8728)"),
     "what a loop gain is added to stays factored": (
         "a = {}, b = {}, K = {}", "K*u/(s^3 + (a + b)*s^2 + a*b*s + K)", "K/(s*(s + a)*(s + b) + K)"),
+    # A crane with a PD controller behind a filter: s^2 (M l s^2 + (M + m) g) (tau s + 1) and the controller
+    # times l s^2 + g, as one closes the loop by hand.
+    "what several gains multiply stays factored": (
+        "K = {}, B = {}, tau = {}, M = {}, m = {}, l = {}, g = {}",
+        "u/((tau*s + 1)*s^2*(M*(l*s^2 + g) + m*g) + (K*(tau*s + 1) + B*s)*(l*s^2 + g))",
+        "1/(s^2*(M*l*s^2 + g*(M + m))*(tau*s + 1) + (l*s^2 + g)*((K*tau + B)*s + K))"),
     "a square": ("a = {}, b = {}, J = {}, m = {}", "u/((J + m*(a + b)^2)*s^2 + 1)",
                  "1/((J + m*(a + b)^2)*s^2 + 1)"),
 }  # fmt: skip
