@@ -32,12 +32,13 @@ from symflex.matrices.matrix_roots import DecouplingZero, MatrixRoots, direction
 from symflex.matrices.system_matrix import SystemMatrix, independent, is_regular
 from symflex.model import Model, with_numbers
 from symflex.model.along import is_tapered
-from symflex.roots import Band, Certificate, Everything, HiddenRoot, Modes, PoleZeroMap, Region, Root
+from symflex.roots import Band, HiddenRoot, Modes, PoleZeroMap, Region, Root
 from symflex.roots.locate import locate
 from symflex.roots.passivity import EnergyProof, energy_proof
 from symflex.roots.pole_zero_map import (
     AT_REST,
     COINCIDE,
+    EXAMINED,
     NONE_ON_AXIS,
     StabilityVerdict,
     chosen,
@@ -56,7 +57,6 @@ RANK_BITS = 256  # of the matrix at a point, which proves its normal rank
 POINT = (0.37, 0.61)  # where that is, in abs(s) of the highest pole: far from all roots, most likely
 NOT_FULL = "the normal rank is not proved: more than this was not found"
 NOT_EXCLUDED = "a zero of a matrix that is not square, or not of full rank, is not excluded, and not proved"
-_EXAMINED = PoleZeroMap("", Everything(), (), (), (), Certificate("", 0, 0))  # nothing more is asked of poles
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ class SearchedMatrix:
     def roots(self) -> MatrixRoots:
         """Return the roots in the region."""
         model = driven_at_once(self.model, self.outputs, self.inputs)
-        modes = self._located(model, self.region, self.outputs, _EXAMINED if self._is_passive else None)
+        modes = self._located(model, self.region, self.outputs, EXAMINED if self._is_passive else None)
         modes, (poles, apart) = self._enough(modes, model, self.outputs, self._apart)
         hidden = [each.root for each in apart]
         pairs, is_proved = self._independent(max((float(root.size().mid()) for root in poles), default=1.0))
@@ -91,7 +91,7 @@ class SearchedMatrix:
             where = modes.region if is_square else hidden_region(modes.region, poles)
             model, read = imposed(self.model, pairs), [y for y, _ in pairs]
             located, (zeros, found) = self._enough(
-                self._located(model, where, read, _EXAMINED),
+                self._located(model, where, read, EXAMINED),
                 model,
                 read,
                 lambda each: self._transmitted(each, len(pairs), hidden, is_square=is_square),
@@ -142,7 +142,7 @@ class SearchedMatrix:
             if not isinstance(wanted, Modes):
                 return 0
             if modes > wanted.count:
-                more = self._located(model, Modes(modes), read, _EXAMINED)
+                more = self._located(model, Modes(modes), read, EXAMINED)
                 if len(more.poles) == len(known.poles):
                     return 0
                 known, parts = more, split(more)
@@ -181,7 +181,7 @@ class SearchedMatrix:
             return None
         highest = max(float(root.size().mid()) for root in unsure) / (2 * pi) * BEYOND
         model = driven_at_once(self.model, self.outputs, self.inputs)
-        return self._located(model, Band(Fraction(0), Fraction(highest)), self.outputs, _EXAMINED)
+        return self._located(model, Band(Fraction(0), Fraction(highest)), self.outputs, EXAMINED)
 
     def _unsure(self, roots: Sequence[Root]) -> list[Root]:
         """Return roots, one of a conjugate pair, where inputs or outputs may miss a mode."""
@@ -304,7 +304,7 @@ class SearchedMatrix:
         if not unsure:
             return []
         model = driven_at_once(self.model, self.outputs, self.inputs)
-        closer = self._located(model, modes.region, self.outputs, _EXAMINED, 2 * self.digits)
+        closer = self._located(model, modes.region, self.outputs, EXAMINED, 2 * self.digits)
         found = [*closer.poles, *(h.root for h in closer.hidden)]
         both = [root for root in found if any(overlap(root, u) or is_conjugate(root, u) for u in unsure)]
         return [root for root in both if not all(self._reach(root))]

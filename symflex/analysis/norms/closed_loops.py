@@ -17,7 +17,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from symflex.analysis.norms.matrix_peak import find_matrix_peak
+from flint import arb
+
+from symflex.analysis.norms.matrix_peak import (
+    DIGITS,
+    SINGULAR,
+    find_matrix_peak,
+    matrix_on_axis,
+    peak_on_axis,
+)
 from symflex.errors import ModelError, UncertifiedError
 from symflex.loops.peak import LoopPeaks, Peak
 from symflex.print.notebook import Printed
@@ -26,6 +34,8 @@ from symflex.roots.pole_zero_map import StabilityVerdict
 from symflex.transfer import AnyBoundFunction
 
 SCHEMA = "symflex.closed_loops/1"
+NAMES = ("S", "T", "S - T")
+SHARES, TIMES = (1, 0, 0.5), (1, 1, 2)  # of 1 that T is taken less, and of what that is
 Rows = Sequence[Sequence[AnyBoundFunction]]
 
 
@@ -105,10 +115,30 @@ def closed_loops(
     if found.closed.word != "stable":
         return found
     try:
-        peaks = [
-            replace(find_matrix_peak(own), tf=name, unit="")
-            for name, own in zip(("S", "T", "S - T"), rows, strict=True)
-        ]
+        peaks = _peaks(rows)
     except (ModelError, UncertifiedError) as error:
         return replace(found, reason=error.diagnostics[0].message)
     return replace(found, peaks=LoopPeaks(peaks[0], peaks[1], peaks[2], None))
+
+
+def _peaks(rows: Sequence[Rows]) -> list[Peak]:
+    """Return the peaks of S, T and S - T: of T less a share of 1, whose entries fall off where loops do.
+
+    ``S = -(T - 1)`` and ``S - T = -2 (T - 1/2)``. Where T does not fall off, S may.
+    """
+    _, complementary, _ = rows
+    try:
+        matrix = matrix_on_axis(complementary, keeps_delays=True)
+    except (ModelError, UncertifiedError):
+        return [
+            replace(find_matrix_peak(own), tf=name, unit="") for own, name in zip(rows, NAMES, strict=True)
+        ]
+    places, peaks = range(len(complementary)), list[Peak]()
+    for own, name, share, times in zip(rows, NAMES, SHARES, TIMES, strict=True):
+        constant = tuple(tuple(arb(share * (i == j)) for j in places) for i in places)
+        asked = Peak(name, "", DIGITS, None, arb("inf"), (), what=SINGULAR)
+        found = peak_on_axis(replace(matrix, constant=constant), asked)
+        peak = replace(found, magnitude=times * found.magnitude)
+        other = peak if peak.certified else replace(find_matrix_peak(own), tf=name, unit="")
+        peaks.append(other if other.certified else peak)
+    return peaks

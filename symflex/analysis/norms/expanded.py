@@ -30,7 +30,7 @@ from symflex.model.model import IMAGINARY
 from symflex.roots import Everything, Modes, PoleZeroMap
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
-from symflex.roots.pole_zero_map import Certificate
+from symflex.roots.pole_zero_map import Certificate, chosen
 from symflex.roots.problem import polynomial_in_s
 from symflex.transfer import AnyBoundFunction
 
@@ -146,7 +146,13 @@ def without_delay(bound: AnyBoundFunction) -> tuple[AnyBoundFunction, arb]:
 
 
 def expanded(
-    bound: AnyBoundFunction, modes: int, digits: int = DIGITS, alike: Sequence[Expanded] = ()
+    bound: AnyBoundFunction,
+    modes: int,
+    digits: int = DIGITS,
+    alike: Sequence[Expanded] = (),
+    *,
+    judged: PoleZeroMap | None = None,
+    keeps_delay: bool = False,
 ) -> Expanded:
     """Return a function in a disc that reaches beyond so many modes; others ``alike`` may share its poles.
 
@@ -160,11 +166,11 @@ def expanded(
             raise UncertifiedError(Diagnostic("SF802", message))
     if bound.is_zero:
         return Expanded(bound, arb(0), _without_poles(bound.name), (), inf, (acb(0),), arb(0), ())
-    bound, delay = without_delay(bound)
+    bound, delay = (bound, arb(0)) if keeps_delay else without_delay(bound)
     is_rational = bound.is_rational and bound.is_reduced
     region = Everything() if is_rational else Modes(modes + max(FURTHER, modes // 2 + 4))
     shared = (f.located for f in alike if _has_poles_of(f.bound, bound))
-    located = next(shared, None) or locate(bound, region, digits, with_zeros=False).complete()
+    located = next(shared, None) or locate(bound, region, digits, with_zeros=False, judged=judged).complete()
     certificate = located.certificate
     reasons: tuple[str, ...] = () if certificate.certified else (f"poles: {certificate.reason}",)
     if any(not hidden.is_proved for hidden in located.hidden):
@@ -213,7 +219,8 @@ def _has_poles_of(one: AnyBoundFunction, other: AnyBoundFunction) -> bool:
 
 def _radii(located: PoleZeroMap, *, has_none: bool) -> list[float]:
     """Return some radii that no pole is near, the largest first, within which all poles are known."""
-    sizes = sorted({float(pole.size().mid()) for pole in located.poles})
+    # Poles in the right half-plane that lie beyond the modes do not say that those between are known.
+    sizes = sorted({float(pole.size().mid()) for pole in chosen(located.poles, located.region)})
     edges = [abs(complex(e.re, e.im)) - e.radius for e in located.excluded]
     if not sizes and not edges and has_none:
         return list(DISCS)

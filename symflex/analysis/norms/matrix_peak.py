@@ -20,7 +20,9 @@ from symflex.analysis.norms.largest import largest_gain
 from symflex.balls import ball, precision
 from symflex.loops.peak import Peak
 from symflex.options import Ends, band_ends
-from symflex.roots import Band, Position, figure
+from symflex.roots import Band, PoleZeroMap, Position, figure
+from symflex.roots.pole_zero_map import EXAMINED
+from symflex.roots.root import short_hertz
 from symflex.transfer import AnyBoundFunction
 
 WIDTH = 1e-6  # relative distance of the bounds
@@ -30,11 +32,17 @@ SINGULAR, MET = "largest singular value", "largest singular value found"
 Rows = Sequence[Sequence[AnyBoundFunction]]
 
 
-def matrix_on_axis(rows: Rows, modes: int = MODES) -> MatrixOnAxis:
-    """Return the functions of a matrix in discs that reach beyond so many modes."""
+def matrix_on_axis(
+    rows: Rows, modes: int = MODES, judged: PoleZeroMap | None = EXAMINED, *, keeps_delays: bool = False
+) -> MatrixOnAxis:
+    """Return the functions of a matrix in discs that reach beyond so many modes.
+
+    Delays of inputs and outputs change no singular value, and are left out if not kept. Poles far out in the
+    right half-plane are not looked for, which ``None`` in place of what is judged changes.
+    """
     every: list[Expanded] = []
     for bound in (bound for row in rows for bound in row):
-        every.append(expanded(bound, modes, alike=every))
+        every.append(expanded(bound, modes, alike=every, judged=judged, keeps_delay=keeps_delays))
     width = len(rows[0])
     functions = tuple(tuple(every[i : i + width]) for i in range(0, len(every), width))
     return MatrixOnAxis(functions, delays=turning_delays(functions))
@@ -48,8 +56,12 @@ def find_matrix_peak(rows: Rows, band: Ends | None = None) -> Peak:
     """
     name, unit = matrix_name(rows)
     ends = None if band is None else Band(*band_ends(band))
-    matrix = matrix_on_axis(rows)
-    asked = Peak(name, unit, DIGITS, ends, arb("inf"), (), reasons=matrix.reasons, what=SINGULAR)
+    return peak_on_axis(matrix_on_axis(rows), Peak(name, unit, DIGITS, ends, arb("inf"), (), what=SINGULAR))
+
+
+def peak_on_axis(matrix: MatrixOnAxis, asked: Peak) -> Peak:
+    """Return the largest singular value of a matrix in the band of what is asked."""
+    ends, asked = asked.band, replace(asked, reasons=matrix.reasons)
     poles = [part.root for function in matrix.every for part in function.parts]
     inside = (
         pole
@@ -66,6 +78,9 @@ def find_matrix_peak(rows: Rows, band: Ends | None = None) -> Peak:
     found = largest_gain(matrix, None if ends is None else (limits[0], limits[1]), WIDTH)
     beyond = arb("inf") if found.omega == inf else None
     reasons, magnitude, places = found.reasons, found.enclosure, found.places
+    if not found.most.is_finite():
+        lowest = min((place.lower() for place in found.places), key=float, default=arb(found.omega))
+        reasons += (f"values at {short_hertz(lowest)} Hz and beyond are not bounded",)
     with precision(BITS):
         is_wide = not found.most <= found.least * (1 + 2 * arb(WIDTH))
     if is_wide and magnitude.is_finite():

@@ -333,7 +333,7 @@ class _Poles:
 
     @classmethod
     def of(cls, rows: Rows, modes: int) -> _Poles:
-        functions = matrix_on_axis(rows, modes).functions
+        functions = matrix_on_axis(rows, modes, None).functions  # with those that are kept wherever they lie
         poles: list[Root] = []
         for function in (f for row in functions for f in row):
             for root in function.located.all_poles:

@@ -61,6 +61,36 @@ def test_a_loop_alone_has_the_margins_of_its_gain():
     assert found.certified and float(found.peaks.disk["alpha"].mid()) == pytest.approx(2, rel=1e-5)
 
 
+ROD = """
+symflex = 1
+[parameters]
+w = "2 1/m"
+g = "30 N/m"
+[elements]
+rod = { type = "rod", between = ["ground", "b"], EA = 9, rhoA = 1, l = 1, eta = "20 ms" }
+push = { type = "force_source", at = "b", f = "g*u" }
+[inputs]
+u = { unit = "m" }
+v = {}
+[outputs]
+Y = "b"
+Z = "w*b + 3*v/(s + 1)"
+"""
+
+
+def test_sensitivity_of_a_rod_is_enclosed_although_it_does_not_fall_off():
+    # By hand: a force moves the free end of a rod by tanh(q)/(EA (1 + eta s) q), q^2 = s^2/(9 (1 + eta s)).
+    found = symflex.loads(ROD).transfer_matrix().bind().closed_loops()
+    s = 1j * np.concatenate([np.linspace(0.1, 200, 4001), np.linspace(7, 8, 10_001)])
+    q = s / (3 * np.sqrt(1 + 0.02 * s))
+    end = 30 * np.tanh(q) / (9 * (1 + 0.02 * s) * q)
+    loops = np.array([[end, 0 * end], [2 * end, 3 / (s + 1)]]).transpose(2, 0, 1)
+    inside = np.linalg.inv(np.eye(2) + loops)
+    assert found.certified
+    for peak, own in ((found.peaks.sensitivity, inside), (found.peaks.balanced, 2 * inside - np.eye(2))):
+        assert float(peak.magnitude.mid()) == pytest.approx(np.linalg.svd(own)[1][:, 0].max(), rel=1e-5)
+
+
 def test_a_closed_loop_on_the_axis_has_no_count():
     found = model(y="-u/(s + 1)", z="v/(s + 1)").transfer_matrix().bind().closed_loops()
     assert found.closed.word == "marginal" and found.encirclements is None
