@@ -46,6 +46,9 @@ if TYPE_CHECKING:
 Monomial = tuple[tuple[str, int], ...]
 Polynomial = dict[Monomial, Fraction]
 
+BENDING, SHEAR = {"E", "EI"}, {"G", "kappaGA"}
+LOSSES = {**dict.fromkeys(("EA", "GJ", *sorted(BENDING | SHEAR)), "eta"), "k_f": "c_f"}
+"""What a part with s of a member's value is: ``E*(1 + tau*s)`` has Kelvin-Voigt damping."""
 TERM_LIMIT = 64
 DEGREE_LIMIT = 64
 BIT_LIMIT = 4_000  # lengths people write stay far below; beyond, the sign is left open
@@ -99,6 +102,25 @@ class Line:
         polynomial = self._read(difference)
         if polynomial is None:
             return self._sign_in_balls(difference)
+        sign = self._sign_of(polynomial)
+        return self._sign_in_balls(difference) if sign is None else sign
+
+    def signs_by_power(self, expression: Expression, name: str) -> dict[int, int | None]:
+        """Return the signs of what powers of a name are multiplied by, nothing of what is no polynomial.
+
+        >>> from symflex.expressions import Product, Sum
+        >>> line = Line({}, frozenset({"E", "E_v"}), frozenset(), {})
+        >>> line.signs_by_power(Sum((Name("E"), Product((Name("E_v"), Name("s"))))), "s")
+        {0: 1, 1: 1}
+        """
+        by_power: dict[int, Polynomial] = {}
+        for monomial, coefficient in (self._read(expression) or {}).items():
+            exponent = dict(monomial).get(name, 0)
+            rest = tuple((n, e) for n, e in monomial if n != name)
+            by_power.setdefault(exponent, {})[rest] = coefficient
+        return {exponent: self._sign_of(part) for exponent, part in by_power.items()}
+
+    def _sign_of(self, polynomial: Polynomial) -> int | None:
         if not polynomial:
             return 0
         signs = {1 if c > 0 else -1 for c in polynomial.values()}
@@ -108,7 +130,7 @@ class Line:
             if any(all(name in certain for name, _ in monomial) for monomial in polynomial):
                 return signs.pop()
         value = self._value(polynomial)
-        return self._sign_in_balls(difference) if value is None else (value > 0) - (value < 0)
+        return None if value is None else (value > 0) - (value < 0)
 
     def _sign_in_balls(self, expression: Expression) -> int | None:
         """Return the sign of the number an expression is, of any form: ``E/(2*(1 + nu))``."""
@@ -491,7 +513,28 @@ def parameter_signs(use: PlacedElement, line: Line) -> dict[str, int | None]:
         along = {p.name for p in element.parameters if p.varies}
         for name in (n for n, sign in signs.items() if sign is None and n in along and line.value(length)):
             signs[name] = _sign_along(given[name], length, line)
+    if isinstance(element, LineElement):
+        signs |= _signs_of_typed_losses(use, signs, line)
     for port in element.parameters:
         for factor in port.of if port.name in signs else ():
             signs.setdefault(factor, signs[port.name])
     return signs
+
+
+def _signs_of_typed_losses(
+    use: PlacedElement, signs: Mapping[str, int | None], line: Line
+) -> dict[str, int | None]:
+    """Return the signs of values that bear s, as in ``k_f + c_f*s``, and of the losses that they add to."""
+    given, found = dict(use.values), dict[str, int | None]()
+    for name, loss in LOSSES.items():
+        typed = line.signs_by_power(given[name], LAPLACE) if name in given and signs[name] is None else {}
+        if typed.keys() | {0} != {0, 1}:
+            continue
+        elastic, lossy, beside = typed.get(0, 0), typed[1], found.get(loss, signs.get(loss))
+        if elastic in (0, 1) and lossy in (0, 1) and beside in (0, 1):
+            found |= {name: elastic, loss: max(lossy, beside)}
+    if dict(use.choices).get("theory") == "timoshenko" and not all(
+        found.keys() & n for n in (BENDING, SHEAR)
+    ):
+        found.pop("eta", None)  # which stands for losses of bending and of shear
+    return found

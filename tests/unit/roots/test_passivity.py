@@ -244,6 +244,38 @@ def test_what_loses_energy_rests_on_the_axis_if_an_end_is_held():
         assert not all_rests(pinned, section), section
 
 
+CANTILEVER = """
+symflex = 1
+parameters = { E = "2 Pa", tau = "0.1 s", G = "4 Pa", k_0 = "3 N/m^2", c_0 = "2 N*s/m^2" }
+inputs.F = { force = "tip" }
+outputs.X = "tip"
+definitions.E_c = "E*(1 + tau*s)"
+elements.arm = { type = "beam", between = ["ground", "tip"], I = 1, A = 1, rho = 1, l = 1, $section }
+"""
+SHEARS = 'theory = "timoshenko", kappa = 1'
+
+
+@pytest.mark.parametrize(
+    ("values", "is_passive", "rests"),
+    [
+        ('E = "E"', True, False),
+        ('E = "(s*tau + 1)*E"', True, True),  # as eta = tau
+        ('E = "E_c"', True, True),
+        ('E = "E + 0.2*s"', True, True),
+        ('E = "E - 0.2*s"', False, False),
+        ('E = "E*(1 + tau*s^2)"', False, False),
+        ('E = "E", k_f = "k_0 + c_0*s"', True, True),  # as c_f = c_0, which holds every section
+        ('E = "E", k_f = "k_0 - c_0*s"', False, False),
+        (f'E = "E_c", G = "G*(1 + tau*s)", {SHEARS}', True, True),
+        (f'E = "E_c", G = "G", {SHEARS}', True, False),  # shear alone loses nothing: not told
+        (f'E = "E", G = "G*(1 + tau*s)", {SHEARS}', True, False),
+    ],
+)
+def test_a_modulus_with_a_loss_in_it_is_damping_of_the_material(values, is_passive, rests):
+    proof = energy_proof(pipeline.loads(Template(CANTILEVER).substitute(section=values)))
+    assert (proof.is_passive, proof.rests) == (is_passive, rests)
+
+
 def test_an_absorber_without_strain_moves_with_the_tip_and_holds_it():
     # Its mass alone is left, m s^2 x = 0. A cantilever rests if three of four quantities do at its tip.
     assert all_rests(HELD + ABSORBER)
