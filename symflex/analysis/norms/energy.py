@@ -15,7 +15,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from math import inf
 
 from flint import acb, arb, arb_poly
@@ -32,6 +33,7 @@ from symflex.model import Model, load_with
 from symflex.model.spec.write import write
 from symflex.print.notebook import Printed
 from symflex.print.text import Passage
+from symflex.roots.distributed.far_out import SECTORS, FunctionFarOut
 from symflex.roots.problem import polynomial_in_s
 from symflex.roots.root import real_json, short_hertz
 from symflex.transfer import AnyBoundFunction, BoundTransferFunction
@@ -161,11 +163,18 @@ def _square(bound: AnyBoundFunction, noise: BoundTransferFunction | None) -> tup
 
 
 def _stays(bound: AnyBoundFunction) -> bool:
-    """Tell whether a sum of delays over a polynomial is proved not to fall off as the frequency grows.
+    """Tell whether the square of a function is proved to have no integral far out.
 
-    The coefficient of its highest power of s is a sum of turning numbers, which does not tend to 0 once it
+    Either its inverse grows there no faster than the root of s, or it is a sum of delays over a polynomial:
+    the coefficient of its highest power of s is a sum of turning numbers, which does not tend to 0 once it
     has been anything else (Bohr 1925).
     """
+    if isinstance(bound, BoundTransferFunction):
+        inverse = FunctionFarOut.of(replace(bound, ratio=bound.ratio**-1, parts=None), SECTORS)
+        start = None if inverse is None else inverse.least(1.0)
+        size = None if inverse is None or start is None else inverse.size(start)
+        if size is not None and size.power <= Fraction(1, 2):
+            return True
     if not isinstance(bound, BoundTransferFunction) or any(
         bound.den.depends_on(name) for name in bound.kernels.generators
     ):

@@ -39,7 +39,8 @@ WIDE_BITS = 128  # of balls, where sums of exponentials cancel
 BLURRED = 10_000  # radius of a ball on the rim over the largest value there, at most
 DIGITS = 30  # of poles and residues
 FURTHER = 8  # modes beyond those kept that are looked for, so that the disc reaches beyond these
-MOST_RADII = 6  # that are tried
+MOST_RADII, SPARE = 6, 3  # that are tried first, and of the smaller ones every so many
+BLUR = 1e-3  # share of a value that a series may lack, unless no smaller disc is sharper
 # Radii [rad/s] that are tried where there is no pole, and the largest growth from the axis to the circle.
 DISCS, TAMEST = tuple(10.0**k for k in range(3, -7, -1)), 16
 APART = 1.02  # least ratio of sizes of poles between which a rim passes
@@ -73,6 +74,11 @@ class Expanded:
         if self.radius == inf:
             return arb(0)
         return (self.rim * arb(USED) ** len(self.regular) / (1 - arb(USED))).upper()
+
+    @property
+    def is_sharp(self) -> bool:
+        """Whether the series lacks little: delays beside a direct path grow to the left of the axis."""
+        return bool(self.missing < BLUR * abs(self.at(acb(0, self.used))).lower())
 
     @cached_property
     def _loop(self) -> LoopFunction | None:
@@ -184,11 +190,17 @@ def expanded(
         function = Expanded(bound, delay, located, parts, radii[0], (), arb(0), reasons)
         if is_rational:
             return replace(function, regular=(_feedthrough(bound),))
+        blurred: Expanded | None = None
         for radius in radii:
             own = tuple(part for part in parts if bool(part.root.size() < radius))
             found = _with_series(replace(function, parts=own, radius=radius))
-            if found is not None and (located.poles or _is_tame(found)):
+            if found is None or not (located.poles or _is_tame(found)):
+                continue
+            if found.is_sharp:
                 return found
+            blurred = found if blurred is None or found.missing < blurred.missing else blurred
+        if blurred is not None:
+            return blurred
     message = f"{bound.name} is not bounded about its first {len(parts)} poles"
     raise UncertifiedError(Diagnostic("SF405", message, None, "ask for fewer modes, or another number"))
 
@@ -233,7 +245,7 @@ def _radii(located: PoleZeroMap, *, has_none: bool) -> list[float]:
     pairs = reversed([*pairwise([*below, limit])])
     between = [(low * high) ** 0.5 for low, high in pairs if low and high > APART * low]
     lowest = next((size for size in below if size), limit)
-    return [*between[:MOST_RADII], 0.5 * lowest]
+    return [*between[:MOST_RADII], *between[MOST_RADII::SPARE], 0.5 * lowest]
 
 
 def _feedthrough(bound: AnyBoundFunction) -> acb:

@@ -63,6 +63,22 @@ def test_noise_is_shaped_by_a_factor():
     assert contains(h2("s/(s + 1)", "1/(s + 3)").value, sqrt((1 / 2 - 2 * 3 / 4 + 9 / 6) / 4))
 
 
+def test_the_acceleration_of_a_mass_at_a_damped_beam_has_no_norm():
+    # Its acceleration tends to 1/m.
+    text = """
+    symflex = 1
+    [elements]
+    arm = { type = "beam", between = ["p", "q"], EI = 20, rhoA = 1, l = 1, eta = "1 ms" }
+    held = { type = "fixed", at = "p" }
+    load = { type = "mass", at = "q.y", m = 3 }
+    [inputs]
+    F = { force = "q.y" }
+    [outputs]
+    A = "s^2*q.y"
+    """
+    assert "does not fall off" in symflex.loads(text).transfer_function("A", "F").bind().h2().because
+
+
 def test_what_is_infinite_says_why():
     for text, reason in (
         ("1/(s^2 + 4)", "imaginary axis"),

@@ -29,6 +29,27 @@ def test_three_modes_of_a_cantilever_have_the_error_of_a_dense_grid():
     assert float(reduced.relative.upper()) == pytest.approx(2.1052e-6 / (0.8**3 / 3 / 140), rel=2e-3)
 
 
+TIP_MASS = """
+symflex = 1
+[elements]
+arm = { type = "beam", between = ["p", "q"], EI = 20, rhoA = 1, l = 1, eta = "1 ms" }
+held = { type = "fixed", at = "p" }
+load = { type = "mass", at = "q.y", m = 2.37 }
+[inputs]
+F = { force = "q.y" }
+[outputs]
+A = "s^2*q.y"
+"""
+
+
+@pytest.mark.slow
+def test_the_error_of_an_acceleration_is_enclosed_up_to_its_limit():
+    # A mass takes a force by itself as the frequency grows: the limit is 1/m, that of the model its D.
+    reduced = symflex.loads(TIP_MASS).transfer_function("A", "F").bind().reduced(3)
+    limit = abs(1 / 2.37 - reduced.state_space().D[0][0])
+    assert limit <= float(reduced.error.most) <= 1.01 * limit
+
+
 @pytest.mark.slow
 def test_an_error_takes_the_fewest_modes():
     # The error of one mode is 1.5368e-4 m/N at 1018 rad/s, an eighth of the static value (mpmath).
