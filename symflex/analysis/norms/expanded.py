@@ -77,7 +77,7 @@ class Expanded:
 
     @property
     def is_sharp(self) -> bool:
-        """Whether the series lacks little: delays beside a direct path grow to the left of the axis."""
+        """Whether the series lacks little: delays beside a direct path grow in the left half-plane."""
         return bool(self.missing < BLUR * abs(self.at(acb(0, self.used))).lower())
 
     @cached_property
