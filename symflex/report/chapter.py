@@ -12,7 +12,7 @@ from symflex import pipeline
 from symflex.errors import SpecError, SymflexError
 from symflex.report.document import Block, Notice, Section, code_of, text
 from symflex.report.facts import ModelFacts, bare_facts, facts_of
-from symflex.report.sections import SECTIONS
+from symflex.report.sections import OF_CONTINUOUS, SECTIONS
 from symflex.report.study import Study, attempt, said
 
 if TYPE_CHECKING:
@@ -68,9 +68,10 @@ def chapter_of(
     blocks += [Notice(f"Warning: {w.message}.") for w in doubts]
     warnings = [f"{w.span}: {w.message} ({w.code})" for w in doubts]
     code = 0
-    for i, (key, make) in enumerate(SECTIONS.items()):
+    given = {k: make for k, make in SECTIONS.items() if not (model.sampled and k in OF_CONTINUOUS)}
+    for i, (key, make) in enumerate(given.items()):
         if progress is not None:
-            progress.report(i / len(SECTIONS), f"{stem}: {key}")
+            progress.report(i / len(given), f"{stem}: {key}")
         part = attempt(lambda m=make: m(study))  # type: ignore[misc]
         if isinstance(part, SymflexError):
             reason = said(part)

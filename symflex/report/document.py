@@ -10,7 +10,7 @@ What a section of a report hands over: its blocks, and the files that belong to 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final, Literal, TypeAlias
 
@@ -22,6 +22,7 @@ from symflex.figures import render
 from symflex.model import Model
 from symflex.print.latex import latex_expression, model_labels
 from symflex.print.mathml import MathRow, mathml_expression
+from symflex.print.text import Passage
 
 Verdict: TypeAlias = Literal["holds", "holds with a condition", "does not hold", "not examined"]
 Tone: TypeAlias = Literal["good", "fair", "bad", "quiet"]
@@ -157,6 +158,21 @@ def marked(badge: Badge, words: str) -> Paragraph:
     """Return a verdict, and behind it what it rests on as a sentence of its own."""
     said = sentence(words)
     return text(badge, f" {said}") if said else text(badge)
+
+
+def as_printed(passages: Iterable[Passage]) -> list[Block]:
+    """Return what a command prints: each passage as a paragraph, and the table below it."""
+    blocks: list[Block] = []
+    for lines, rows, has_head in passages:
+        runs: list[Run] = []
+        for line in lines:
+            runs += ["\n", sentence(line)] if runs else [sentence(line)]
+        blocks += [text(*runs)] if runs else []
+        if rows:
+            head, *body = rows if has_head else [("",) * len(rows[0]), *rows]
+            cells = tuple(tuple((exponents(cell.replace("+-", "±")),) for cell in row) for row in body)
+            blocks.append(Table(columns(*((name, "number") for name in head)), cells))
+    return blocks
 
 
 def parted(sections: Sequence[Section]) -> tuple[Block, ...]:

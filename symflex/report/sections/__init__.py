@@ -19,9 +19,12 @@ SECTIONS: dict[str, Callable[[Study], ChapterPart | None]] = {  # sections in th
     "figures": files.figure_section,
     "data": files.data_section,
     "roots": roots.root_section,
+    "sampled": roots.sampled_section,
     "letters": symbolic.symbolic_section,
     "loops": roots.loop_section,
     "contact": contact.contact_section,
     "files": files.export_section,
     "specification": formulas.specification_section,
 }
+OF_CONTINUOUS = ("equations", "printed", "figures", "data", "roots", "letters", "loops", "files")
+"""Sections that a model with a sampled controller does not have."""

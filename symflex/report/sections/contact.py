@@ -17,17 +17,12 @@ from symflex.report.document import (
     Block,
     ChapterPart,
     Notice,
-    Run,
     Section,
-    Table,
+    as_printed,
     code_of,
-    columns,
-    exponents,
     marked,
     parted,
     picture,
-    sentence,
-    text,
 )
 from symflex.report.study import Study, attempt, said
 
@@ -94,16 +89,7 @@ def _at(model: Model, name: str) -> PortPassivity | HybridPassivity:
 
 
 def _said_of(found: Judged) -> list[Block]:
-    """Return the verdict as a badge, and below it what the command prints: each passage as a paragraph."""
+    """Return the verdict as a badge, and below it what the command prints."""
     first, *others = found.passages()
-    blocks: list[Block] = [marked(MARKS[found.passive], STABLE if found.passive else "")]
-    for lines, rows in [(first.lines[1:], first.rows), *((p.lines, p.rows) for p in others)]:
-        runs: list[Run] = []
-        for line in lines:
-            runs += ["\n", sentence(line)] if runs else [sentence(line)]
-        blocks += [text(*runs)] if runs else []
-        if rows:
-            head, *body = rows
-            cells = tuple(tuple((exponents(cell),) for cell in row) for row in body)
-            blocks.append(Table(columns(*((name, "number") for name in head)), cells))
-    return blocks
+    verdict = marked(MARKS[found.passive], STABLE if found.passive else "")
+    return [verdict, *as_printed([first._replace(lines=first.lines[1:]), *others])]

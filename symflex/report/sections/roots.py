@@ -26,6 +26,7 @@ from symflex.report.document import (
     Section,
     Table,
     Tone,
+    as_printed,
     code_of,
     columns,
     exponents,
@@ -46,8 +47,10 @@ LEFT_OUT: Final = (
     "real axis. It has no mode shapes, responses in time, stability, state equations, or code in languages "
     "other than Python."
 )
-
-
+SAMPLED: Final = (
+    "The report takes the controller as sampled. It has no transfer functions, figures or code, which "
+    "belong to continuous models."
+)
 COMPLEX: Final = (
     "Coefficients are complex. The report lists all poles and zeros, in both half-planes. It has no mode "
     "shapes, responses in time, state equations, or code in languages other than Python."
@@ -83,6 +86,22 @@ def root_section(study: Study) -> ChapterPart:
     data = {f"data/{study.stem}_roots.json": json.dumps(document, indent=1).encode()}
     title = "Poles and zeros" if blocks else ""
     return ChapterPart(title, tuple(blocks), data, tuple(warnings), code)
+
+
+def sampled_section(study: Study) -> ChapterPart | None:
+    """Return the poles in z of a loop that a sampled controller closes."""
+    if study.model.sampled is None:
+        return None
+    from symflex.analysis.sampled_loop import sampled_poles  # few models have one
+
+    found = sampled_poles(study.model)
+    badge = Badge("certified", "good") if found.certified else Badge("not certified", "bad")
+    _, *tables = found.passages()
+    verdict = marked(badge, f"{found.count} poles in z: {found.sentence}")
+    blocks = (verdict, text(f"{found.sampled}."), *as_printed(tables), text(SAMPLED))
+    data = {f"data/{study.stem}_poles.json": json.dumps(found.to_json_dict(), indent=1).encode()}
+    code = 0 if found.certified else UncertifiedError.exit_code
+    return ChapterPart("The sampled loop", blocks, data, (), code)
 
 
 def _of(located: PoleZeroMap, meaning: ZeroExplanation | None) -> tuple[Block, ...]:

@@ -4,7 +4,8 @@ import json
 
 import pytest
 
-from symflex.report.document import PageFigure, Table
+from symflex.report.chapter import chapter_of
+from symflex.report.document import PageFigure, Section, Table
 from symflex.report.sections.contact import contact_section
 from symflex.report.study import Study
 from tests.unit.contact.machines import LAGGED
@@ -13,6 +14,17 @@ SLAVE = """
 slave = { type = "mass", at = "y", m = "2 kg" }
 link = { type = "spring", between = ["x", "y"], k = "30 N/m" }
 [inputs]"""
+
+
+WALL = """symflex = 1
+parameters = { m = "1 kg", K = "100 N/m", T = "31.6227766 ms" }
+blocks.wall = "K*z^0"
+sampled.period = "T"
+elements.handle = { type = "mass", at = "x", m = "m" }
+elements.motor = { type = "force_source", at = "x", f = "-wall*x" }
+inputs.F = { force = "x" }
+outputs.X = "x"
+"""
 
 
 def section_of(folder, text):
@@ -56,3 +68,18 @@ def test_a_model_without_ports_has_no_such_section(tmp_path):
 def test_a_parameter_without_a_value_is_told_in_place_of_the_verdict(tmp_path):
     part = section_of(tmp_path, LAGGED.replace('K = "20.5 N/m"', 'K = { unit = "N/m" }'))
     assert "'K'" in part.blocks[0].text
+
+
+def test_a_sampled_controller_has_its_poles_in_z_and_nothing_of_a_continuous_one(tmp_path):
+    # m s v = -K x, held: z^2 - 2 z + 1 + K T^2/(2 m) (z + 1), with K T^2/(2 m) = 0.05 outside the circle.
+    path = tmp_path / "wall.toml"
+    path.write_text(WALL, encoding="utf-8")
+    chapter = chapter_of(path, "wall")
+    assert (chapter.warnings, chapter.code) == ((), 0)
+    titles = [block.title for block in chapter.section.blocks if isinstance(block, Section)]
+    assert "The sampled loop" in titles
+    assert not {"Transfer functions", "Poles and zeros", "Figures"} & {*titles}
+    found = json.loads(chapter.files["data/wall_poles.json"])
+    assert (found["outside"], found["count"]) == (2, 2)
+    (pole,) = found["poles"]
+    assert pole["abs"] == pytest.approx(1.05**0.5)
