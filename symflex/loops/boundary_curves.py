@@ -20,6 +20,7 @@ from flint import acb, arb, fmpz_mpoly
 
 from symflex.balls import Pair, precision, status_of, two_steps
 from symflex.budget import spend
+from symflex.errors import BudgetError
 from symflex.loops.boxes import BITS, Box, CharacteristicFunction, FirstOrder, OpenBox
 from symflex.transfer import TransferFunction
 
@@ -138,41 +139,51 @@ def _moved(point: Point, which: int, x: float, omega: float) -> Point:
 
 def boundary_curves(
     function: CharacteristicFunction, ranges: Box, boxes: Sequence[OpenBox]
-) -> list[list[Point]]:
-    """Return the curves that pass the boxes, with parameters in SI units."""
+) -> tuple[list[list[Point]], str]:
+    """Return the curves that pass the boxes, with parameters in SI units, and why some may be missing."""
+    lows, sizes = [low for low, _ in ranges], [high - low for low, high in ranges]
+    curves: list[list[Point]] = []
+    missing = ""
+    with precision(BITS):
+        try:
+            for curve in _traced(function, ranges, boxes):
+                curves.append(curve)
+        except BudgetError as error:
+            missing = error.diagnostics[0].message
+    # The ends do not belong to the ranges.
+    inner = [c for c in curves if not any({p[k] for p in c} in ({0.0}, {1.0}) for k in (0, 1))]
+    (u, v), (a, b) = map(float, lows), map(float, sizes)
+    return [[(u + a * x, v + b * y, w) for x, y, w in curve] for curve in inner], missing
+
+
+def _traced(function: CharacteristicFunction, ranges: Box, boxes: Sequence[OpenBox]) -> Iterator[list[Point]]:
+    """Yield the curves, with parameters as shares of their ranges."""
     lows, sizes = [low for low, _ in ranges], [high - low for low, high in ranges]
     parts = max(
         (size / (b - a) for box in boxes for size, (a, b) in zip(sizes, box.box, strict=True)), default=1
     )
-    curves: list[list[Point]] = []
     passed: dict[tuple[int, int], list[float]] = {}
-    with precision(BITS):
-        for box in boxes:
-            x, y = (
-                float(((a + b) / 2 - low) / size)
-                for (a, b), low, size in zip(box.box, lows, sizes, strict=True)
-            )
-            here = floor(x * parts), floor(y * parts)
-            for tf, polynomials, which, low, high in _starts(function, box):
-                if any(low * (1 - ALIKE) <= w <= high * (1 + ALIKE) for w in passed.get(here, ())):
-                    continue
-                tracer = Tracer(function, ranges, tf, polynomials, which)
-                guess = (x, y, (low + high) / 2)
-                start = tracer.corrected(guess, 0) or tracer.corrected(guess, 1)
-                if start is None or max(abs(start[0] - x), abs(start[1] - y)) * parts > 1:
-                    continue
-                curve = tracer.traced(start)
-                curves.append(curve)
-                for one, two in pairwise(curve):
-                    count = int(2 * parts * max(abs(one[0] - two[0]), abs(one[1] - two[1]))) + 1
-                    for k in range(count + 1):
-                        u, v, w = (a + (b - a) * k / count for a, b in zip(one, two, strict=True))
-                        for i, j in product((-1, 0, 1), (-1, 0, 1)):
-                            passed.setdefault((floor(u * parts) + i, floor(v * parts) + j), []).append(w)
-    # The ends do not belong to the ranges.
-    inner = [c for c in curves if not any({p[k] for p in c} in ({0.0}, {1.0}) for k in (0, 1))]
-    (u, v), (a, b) = map(float, lows), map(float, sizes)
-    return [[(u + a * x, v + b * y, w) for x, y, w in curve] for curve in inner]
+    for box in boxes:
+        x, y = (
+            float(((a + b) / 2 - low) / size) for (a, b), low, size in zip(box.box, lows, sizes, strict=True)
+        )
+        here = floor(x * parts), floor(y * parts)
+        for tf, polynomials, which, low, high in _starts(function, box):
+            if any(low * (1 - ALIKE) <= w <= high * (1 + ALIKE) for w in passed.get(here, ())):
+                continue
+            tracer = Tracer(function, ranges, tf, polynomials, which)
+            guess = (x, y, (low + high) / 2)
+            start = tracer.corrected(guess, 0) or tracer.corrected(guess, 1)
+            if start is None or max(abs(start[0] - x), abs(start[1] - y)) * parts > 1:
+                continue
+            curve = tracer.traced(start)
+            yield curve
+            for one, two in pairwise(curve):
+                count = int(2 * parts * max(abs(one[0] - two[0]), abs(one[1] - two[1]))) + 1
+                for k in range(count + 1):
+                    u, v, w = (a + (b - a) * k / count for a, b in zip(one, two, strict=True))
+                    for i, j in product((-1, 0, 1), (-1, 0, 1)):
+                        passed.setdefault((floor(u * parts) + i, floor(v * parts) + j), []).append(w)
 
 
 def _starts(

@@ -120,6 +120,11 @@ class StabilityChart(Printed):
     @cached_property
     def boundaries(self) -> list[list[Point]]:
         """Curves with a pole on the axis: certified points of both parameters and frequency [rad/s]."""
+        return self._curves[0]
+
+    @cached_property
+    def _curves(self) -> tuple[list[list[Point]], str]:
+        """The curves, and why some may be missing."""
         return boundary_curves(self.function, self.ranges, self.open)
 
     @cached_property
@@ -169,7 +174,7 @@ class StabilityChart(Printed):
             "nominal": [None if x is None else float(x) for x in self.nominal],
             "at_nominal": self.at_nominal,
             "certified": self.certified,
-            "reasons": list(self.reasons),
+            "reasons": list(dict.fromkeys(filter(None, (*self.reasons, self._curves[1])))),
             "counted_up_to_rad_per_s": self.radius,
             "undecided": 1 - self.decided,
             "regions": [

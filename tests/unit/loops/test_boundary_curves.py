@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from itertools import pairwise
+from itertools import count, pairwise
 from math import hypot
 
 import pytest
 
 from symflex import pipeline
 from symflex.balls import precision
+from symflex.budget import Budget
 from symflex.loops.boundary_curves import BITS, LONGEST, Tracer
-from symflex.loops.over import characteristic
+from symflex.loops.over import characteristic, stability_over
+from symflex.options import StabilityOptions
 
 TEXT = """symflex = 1
 parameters.a = { value = 0.1, assume = "real" }
@@ -62,3 +64,14 @@ def test_a_point_is_moved_to_the_curve_along_the_parameter_that_is_free_or_there
             )
         assert near.corrected((0.5, 0.5, 1.0), 0) is None  # a = 0: where a^2 has its least value
         assert near.corrected((0.9, 0.9, 1.0), 0) is None
+
+
+def test_a_chart_says_that_curves_are_missing_when_time_is_over():
+    given = StabilityOptions(over=("a", "b"), ranges=(("a", "-2", "2"), ("b", "-2", "2")), resolve="20 %")
+    chart, whole = (stability_over(pipeline.loads(TEXT), given) for _ in range(2))
+    assert chart.certified
+    with Budget(0, clock=count().__next__).entered():
+        document = chart.to_json_dict()
+    assert (document["boundaries"], document["reasons"]) == ([], ["the time budget is used up"])
+    complete = whole.to_json_dict()
+    assert len(complete["boundaries"]) == 1 and complete["reasons"] == []
