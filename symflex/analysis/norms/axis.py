@@ -23,15 +23,11 @@ from symflex.analysis.norms.expanded import BITS, Expanded
 from symflex.balls import Part, ball, precision
 from symflex.budget import spend
 from symflex.loops.axis import pieces
-from symflex.roots.distributed.far_out import SECTORS, FunctionFarOut
+from symflex.roots.distributed.far_out import FunctionFarOut
 from symflex.roots.root import Root, overlap
-from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
 RATIO = 1.12  # of the ends of first pieces
 MOST_PIECES = 20_000  # of the axis
-FAR = 1e12  # where a limit is guessed, over where sizes are known first
-NEAR_LIMIT = 0.01  # share of it that the function differs there, at most
-LARGEST_DENOMINATOR = 9  # digits of the denominator of a limit that is guessed
 NARROWEST = 1e-12  # relative width of a piece that is not halved any more
 ORDER = 6  # powers of a form in a disc
 CIRCLE_POINTS = 14  # values that make the powers of a form beyond, and their number
@@ -56,35 +52,6 @@ class ModalTerm:
 def _agree(one: acb, other: acb) -> bool:
     """Tell whether two poles are the same but for rounding."""
     return bool(abs(one - other) <= AGREEING * abs(one))
-
-
-def far_out(bound: AnyBoundFunction) -> tuple[FunctionFarOut | None, Fraction]:
-    """Return what bounds a function with waves or delays far out less its limit there, and the limit.
-
-    A limit is guessed from its enclosure, and taken if less it the function is proved to be small; else 0.
-    """
-    if not isinstance(bound, BoundTransferFunction) or bound.is_rational:
-        return None, Fraction(0)
-    far = FunctionFarOut.of(bound, SECTORS)
-    start = None if far is None else far.least(1.0)
-    size = None if far is None or start is None else far.size(start * FAR)
-    if size is None or size.power != 0 or not size.lead.is_finite():
-        return far, Fraction(0)
-    limit = _simplest(size.lead.real)
-    rest = bound.num - bound.den * limit
-    if not limit or rest.is_zero:
-        return far, Fraction(0)
-    less = FunctionFarOut.of(replace(bound, ratio=rest / bound.den, parts=None), SECTORS)
-    own = None if less is None or start is None else less.size(start * FAR)
-    is_smaller = own is not None and own.power <= 0 and own.most < NEAR_LIMIT * abs(ball(limit))
-    return (less, limit) if is_smaller else (far, Fraction(0))
-
-
-def _simplest(value: arb) -> Fraction:
-    """Return a fraction of few digits in a ball."""
-    middle = Fraction(float(value.mid()))
-    some = (middle.limit_denominator(10**k) for k in range(LARGEST_DENOMINATOR + 1))
-    return next((f for f in some if value.contains(ball(f))), middle)
 
 
 def norm(matrix: acb_mat) -> arb:
@@ -343,10 +310,10 @@ class MatrixOnAxis:
             share = arb(1) / reach
             return TaylorForm(tuple(powers), (size * share**CIRCLE_POINTS / (1 - share)).upper())
 
-    @cached_property
+    @property
     def _far(self) -> list[tuple[FunctionFarOut | None, Fraction]]:
         """What is known of the functions with waves or delays less their limits, and these."""
-        return [far_out(function.bound) for function in self.every]
+        return [function.far_out for function in self.every]
 
     def limit(self) -> acb_mat:
         """Return minus the constant of R, and the limit of G where that is rational."""

@@ -23,7 +23,7 @@ from flint import acb, arb, arb_poly
 
 from symflex.algebra import Factored, by_powers
 from symflex.analysis.norms.axis import MOST_PIECES, NARROWEST, RATIO, MatrixOnAxis, TaylorForm
-from symflex.analysis.norms.expanded import BITS, Expanded, expanded, is_delay
+from symflex.analysis.norms.expanded import BITS, FAR, Expanded, expanded, is_delay
 from symflex.balls import Branching, Open, Part, at_centre, branch, halved, precision, settled
 from symflex.errors import BudgetError, Diagnostic, Source, UncertifiedError
 from symflex.expressions.format import number_text
@@ -171,8 +171,7 @@ def _stays(bound: AnyBoundFunction) -> bool:
     """
     if isinstance(bound, BoundTransferFunction):
         inverse = FunctionFarOut.of(replace(bound, ratio=bound.ratio**-1, parts=None), SECTORS)
-        start = None if inverse is None else inverse.least(1.0)
-        size = None if inverse is None or start is None else inverse.size(start)
+        size = None if inverse is None else inverse.size(FAR)
         if size is not None and size.power <= Fraction(1, 2):
             return True
     if not isinstance(bound, BoundTransferFunction) or any(

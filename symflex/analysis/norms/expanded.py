@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
 from math import inf, pi
@@ -22,23 +23,27 @@ from flint import acb, arb
 
 from symflex.algebra import LAPLACE, NO_KERNELS, Kernel, Ring, degree_in
 from symflex.analysis.rational.laurent import PrincipalPart, expand_at_zero, residues_at
-from symflex.balls import UndecidedError, at_centre, covered, precision
+from symflex.balls import UndecidedError, at_centre, ball, covered, precision
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
 from symflex.loops.loop_function import LoopFunction
 from symflex.model.model import IMAGINARY
 from symflex.roots import Everything, Modes, PoleZeroMap
+from symflex.roots.distributed.far_out import SECTORS, FunctionFarOut
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
 from symflex.roots.pole_zero_map import Certificate, chosen
 from symflex.roots.problem import polynomial_in_s
-from symflex.transfer import AnyBoundFunction
+from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
 BITS = 192  # of values; those at the coarsest points lose the digits that poles near a circle cost
 WIDE_BITS = 128  # of balls, where sums of exponentials cancel
 BLURRED = 10_000  # radius of a ball on the rim over the largest value there, at most
 DIGITS = 30  # of poles and residues
 FURTHER = 8  # modes beyond those kept that are looked for, so that the disc reaches beyond these
+FAR = 1e15  # frequency [rad/s] at which a limit is guessed
+NEAR_LIMIT = 0.01  # share of it that the function differs there, at most
+LARGEST_DENOMINATOR = 9  # digits of the denominator of a limit that is guessed
 MOST_RADII, SPARE = 6, 3  # that are tried first, and of the smaller ones every so many
 BLUR = 1e-3  # share of a value that a series may lack, unless no smaller disc is sharper
 # Radii [rad/s] that are tried where there is no pole, and the largest growth from the axis to the circle.
@@ -81,6 +86,11 @@ class Expanded:
         return bool(self.missing < BLUR * abs(self.at(acb(0, self.used))).lower())
 
     @cached_property
+    def far_out(self) -> tuple[FunctionFarOut | None, Fraction]:
+        """What bounds the function far out less its limit there, and the limit."""
+        return _far_out(self.bound)
+
+    @cached_property
     def _loop(self) -> LoopFunction | None:
         bound = self.bound
         return LoopFunction.of(bound, bound.num, bound.den) if bound.is_reduced and bound.kernels else None
@@ -104,6 +114,34 @@ class Expanded:
         if bits not in self._enclosed:
             self._enclosed[bits] = self.bound.enclosed(bits)
         return self._enclosed[bits](s)
+
+
+def _far_out(bound: AnyBoundFunction) -> tuple[FunctionFarOut | None, Fraction]:
+    """Return what bounds a function with waves or delays far out less its limit there, and the limit.
+
+    A limit is guessed from its enclosure, and taken if less it the function is proved to be small; else 0.
+    """
+    if not isinstance(bound, BoundTransferFunction) or bound.is_rational:
+        return None, Fraction(0)
+    far = FunctionFarOut.of(bound, SECTORS)
+    size = None if far is None else far.size(FAR)
+    if size is None or size.power != 0 or not size.lead.is_finite():
+        return far, Fraction(0)
+    limit = _simplest(size.lead.real)
+    rest = bound.num - bound.den * limit
+    if not limit or rest.is_zero:
+        return far, Fraction(0)
+    less = FunctionFarOut.of(replace(bound, ratio=rest / bound.den, parts=None), SECTORS)
+    own = None if less is None else less.size(FAR)
+    is_smaller = own is not None and own.power <= 0 and own.most < NEAR_LIMIT * abs(ball(limit))
+    return (less, limit) if is_smaller else (far, Fraction(0))
+
+
+def _simplest(value: arb) -> Fraction:
+    """Return a fraction of few digits in a ball."""
+    middle = Fraction(float(value.mid()))
+    some = (middle.limit_denominator(10**k) for k in range(LARGEST_DENOMINATOR + 1))
+    return next((f for f in some if value.contains(ball(f))), middle)
 
 
 def turning_delays(functions: Sequence[Sequence[Expanded]]) -> tuple[tuple[arb, ...], ...]:

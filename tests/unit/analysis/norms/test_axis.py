@@ -149,9 +149,9 @@ def test_the_tail_of_poles_on_the_axis_is_attained():
 @pytest.mark.parametrize(("power", "tail"), [(Fraction(1, 2), None), (0, 3), (Fraction(-1, 2), 1)])
 def test_a_tail_is_bounded_where_it_does_not_grow(power, tail):
     # 3 w^p at 9 rad/s and beyond.
-    matrix = MatrixOnAxis(((SimpleNamespace(used=1.0, radius=2.0),),))
     size = SimpleNamespace(power=Fraction(power), most=arb(3))
-    matrix.__dict__["_far"] = [(SimpleNamespace(size=lambda omega: size), Fraction(0))]
+    far_out = SimpleNamespace(size=lambda omega: size), Fraction(0)
+    matrix = MatrixOnAxis(((SimpleNamespace(used=1.0, radius=2.0, far_out=far_out),),))
     found = matrix.tail(9.0)
     assert (found is None) if tail is None else float(found) == pytest.approx(tail)
 
