@@ -160,8 +160,8 @@ def errors(reduced: Any, values: Values, omega: Sequence[float] | np.ndarray) ->
 
 
 QUICK = (0, 12)
-# Frames take half a minute each, tapers a third of it: few are run. All pass but the frames 25, 30 and 33, which
-# are not certified.
+# Frames take half a minute each, tapers a third of it: few are run. All pass but the frames 25, 30 and 33,
+# which are not certified.
 LEFT_OUT = ({*range(24, 36)} - {26}) | {n for n in range(36, 48) if n % 4}
 SEEDS = [
     n if n in QUICK else pytest.param(n, marks=pytest.mark.slow)
