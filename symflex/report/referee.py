@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
+from itertools import pairwise, product
 from typing import Final, Literal
 
 from symflex.algebra import LAPLACE
@@ -37,6 +38,7 @@ from symflex.expressions import (
     Expression,
     Name,
     Negative,
+    Power,
     Product,
     Quotient,
     Sum,
@@ -57,13 +59,16 @@ from symflex.model import Model, Published
 from symflex.model.analysis import notation_of_model, readable_names, with_candidates
 from symflex.papers.formula import defined_symbol, definition, read_formula, read_value
 from symflex.papers.laplace import in_laplace, laplace_of
+from symflex.papers.matrices import unsigned
 from symflex.papers.source import Paper, PrintedEquation, statements, written
-from symflex.papers.symbols import IMAGINARY, PaperNotation, PrintedSymbol
+from symflex.papers.symbols import DOTS, IMAGINARY, PaperNotation, PrintedSymbol
+from symflex.print.forms import print_form
 from symflex.print.label import labels_of
 from symflex.print.latex import latex_expression, model_labels
 from symflex.report.document import Badge, Block, Code, Section, Tone, labelled, marked, text
 from symflex.report.report import Report
 from symflex.report.sections.formulas import equations
+from symflex.transfer import TransferFunction
 from symflex.transfer.of_model import derive_all
 
 Judgement = Literal["equal", "factor", "different", "other model", "not read"]
@@ -178,7 +183,7 @@ class _Court:
         self.used: dict[
             Span, str
         ] = {}  # equations that define what other formulas contain, and what they define
-        self.derived: dict[tuple[int, tuple[str, str]], object] = {}
+        self.derived: dict[tuple[int, tuple[str, str]], TransferFunction] = {}
         self.tied: dict[tuple[int, str], dict[tuple[str, str], None]] = {}  # what a letter is, by model
         for display in paper.displays:
             try:
@@ -215,13 +220,19 @@ class _Court:
         equation = _exact(item.equation)
         notation = self.notation(model, equation)
         self.check_letters(equation, model, notation)
-        rows, missed = _read_sides(equation, notation)
+        moving = _moving(notation, model)
+        rows, missed = _read_sides(equation, notation.with_names({x: x.name for x in moving}))
+        dots = {symbol.name: meant for symbol, meant in moving.items()}
+        has_dots = any(_holds(side, name) for row in rows for side in row for name in dots)
+        rows = [[substitute(side, dots) for side in row] for row in rows]
         missed += [_Unjudged("not read", NEARLY)] if equation is not item.equation else []
         sides = rows[0]
         known = {*notation.names.values()} - {
             s.name for s, e in self.definitions.items() if e is item.equation
         }
         claims = [claim for row in rows for claim in _claims(row, model, known)]
+        if has_dots:  # dx/dt = v names a velocity, and is no claim about x/v
+            claims = [c for c in claims if any(n.name != LAPLACE for n in names(c[1]))]
         number_of = self.models.index(model)
         for pair in model.transfer_functions:  # H = X/F = ... says what H is, also where it comes again
             if any(side == Quotient(*map(Name, pair)) for side in sides):
@@ -232,6 +243,11 @@ class _Court:
         is_tied = not claims and (number_of, letter) in self.tied
         if is_tied:
             claims = [(None, side) for side in sides[1:]]
+        if not claims and (relations := [r for row in rows for r in _relations(row, model)]):
+            return _worst([self.related(item, model, r, notation) for r in relations], missed)
+        zeros = _vanishing(sides, model)
+        if zeros:
+            return _worst([self.characteristic(item, model, zero, notation) for zero in zeros], missed)
         if not claims:
             raise (
                 missed[0]
@@ -325,10 +341,83 @@ class _Court:
         return best
 
     def audit(self, model: Model, published: Published) -> Audit:
-        key = self.models.index(model), published.tf
+        return judge(self.function(model, published.tf), published)
+
+    def function(self, model: Model, pair: tuple[str, str]) -> TransferFunction:
+        """Return a derived function, derived once."""
+        key = self.models.index(model), pair
         if key not in self.derived:
-            (self.derived[key],) = derive_all(model, (published.tf,))
-        return judge(self.derived[key], published)  # type: ignore[arg-type]
+            (self.derived[key],) = derive_all(model, (pair,))
+        return self.derived[key]
+
+    def related(
+        self, item: _Item, model: Model, relation: Mapping[str, Expression], notation: PaperNotation
+    ) -> JudgedFormula:
+        """Return the verdict on an equation of several outputs: one of them by the others as derived.
+
+        It has to hold for every input that it names, all others being zero, or else for one of all.
+        """
+        where = item.equation.span
+        inputs = [i.name for i in model.inputs if i.name in relation]
+        outputs = [name for name in relation if name not in inputs]
+        first = next((name for name in outputs if is_number(unsigned(relation[name]), 1)), outputs[0])
+        others = [name for name in outputs if name != first]
+        found = []
+        for given in inputs or [i.name for i in model.inputs]:
+            terms = [product_of([relation[name], Name(name)]) for name in others]
+            terms += [relation[given]] if given in relation else []
+            formula = _over(negative(sum_of(terms)), relation[first])
+            lines = self.lines(substitute(formula, dict.fromkeys(others, number(1))), model, notation, where)
+            lines += tuple((name, quotient(*self.parts(model, (name, given)))) for name in others)
+            printed = Published((first, given), formula, lines, None, "", where, is_latex=True)
+            audit = replace(self.audit(model, printed), derived=None)
+            if any(c.place in {f"line {name}" for name in others} for c in audit.changes):
+                audit = replace(audit, correction=None)  # what is derived is no slip of the paper
+            judged = _judged(item, model, audit)
+            said = f"it relates {' and '.join(outputs)}, for {given}"
+            found.append(replace(judged, reason=f"{judged.reason}; {said}" if judged.reason else said))
+        best = (max if inputs else min)(found, key=_rank)
+        if best.verdict == "different" and not best.slip and len(relation) > 2:  # noqa: PLR2004
+            raise _Unjudged("other model", "it does not hold in the models, and no small change is known")
+        return best
+
+    def parts(self, model: Model, pair: tuple[str, str]) -> tuple[Expression, Expression]:
+        """Return the numerator and denominator of a derived function, with nothing but s and parameters."""
+        form = print_form(self.function(model, pair))
+        above, below = form.num, form.den
+        for _ in form.where:
+            above, below = substitute(above, dict(form.where)), substitute(below, dict(form.where))
+        return above, below
+
+    def characteristic(
+        self, item: _Item, model: Model, formula: Expression, notation: PaperNotation
+    ) -> JudgedFormula:
+        """Return the verdict on what is zero at the poles, if it is; nobody said that it should be."""
+        where, near = item.equation.span, ""
+        lines = self.lines(formula, model, notation, where)
+        if not any(_holds(e, LAPLACE) for e in (formula, *(e for _, e in lines))):
+            raise _Unjudged("other model", "it names no transfer function of the models")
+        for pair in model.transfer_functions[:MOST_PAIRS]:
+            above, _ = self.parts(model, pair)
+            name = "/".join(pair)
+            printed = Published(pair, quotient(above, formula), lines, None, "", where, is_latex=True)
+            audit = self.audit(model, printed)
+            roots = [n for n, line in lines if isinstance(line, Power | Call) and _holds(line, LAPLACE)]
+            roots = [] if audit.tf.is_rational else roots
+            for wavenumber, count in product(roots, (1, 2, 3)):
+                below = product_of([formula, power(Name(wavenumber), count)])  # that is not zero with it
+                again = self.audit(model, replace(printed, expression=quotient(above, below)))
+                if again.verdict == "equal" or again.ratio is not None:
+                    audit = again
+                    break
+            if audit.verdict == "equal" or (audit.ratio is not None and not _holds(audit.ratio, LAPLACE)):
+                reason = f"its roots are the poles of {name}"
+                return JudgedFormula(item.latex, item.label, where, "equal", reason, "", model)
+            if audit.ratio is not None:
+                near = near or f"; but for roots at 0, its roots are the poles of {name}"
+            elif audit.changes and all(c.place.startswith(("denominator", "line")) for c in audit.changes):
+                near = near or f"; the poles of {name} would need: {_changes_said(audit)}"
+        raise _Unjudged("other model", f"it was not proved to vanish at the poles of the models{near}")
 
     def notation(self, model: Model, equation: PrintedEquation) -> PaperNotation:
         """Return what symbols mean in a paper about a model: its own definitions hide those of the model.
@@ -337,6 +426,8 @@ class _Court:
         """
         letters = {t.text for t in equation.tokens}
         units = IMAGINARY if letters & {r"\omega", r"\Omega"} else ()
+        typed = [t.text for t in equation.tokens]
+        turning = {b[1:] for a, b in pairwise(typed) if a in ("i", "j") and b in (r"\omega", r"\Omega")}
         base = notation_of_model(model, model.notation)
         defined = {d.name for d in model.definitions}
         more = {
@@ -349,7 +440,7 @@ class _Court:
             twin = symbol._replace(
                 base=symbol.base.swapcase() if len(symbol.base) == 1 else _turned(symbol.base)
             )
-            if name in ends and twin not in base.names and twin.name not in units:
+            if name in ends and twin not in base.names and twin.name not in (*units, *turning):
                 more.setdefault(twin, name)
         varying = base.signals | {symbol.name for symbol in self.definitions}
         return replace(base.with_names(more), signals=varying - {p.name for p in model.parameters})
@@ -573,6 +664,48 @@ def _claims(
             yield from ((None, side) for side in sides[1:] if not _is_function(side, known))
 
 
+def _moving(notation: PaperNotation, model: Model) -> dict[PrintedSymbol, Expression]:
+    """Return what dots above an output or an input mean, which is s times it, unless they are a name."""
+    ends = {item.name for group in (model.outputs, model.inputs) for item in group}
+    own = {*(p.name for p in model.parameters), *(d.name for d in model.definitions)}
+    found: dict[PrintedSymbol, Expression] = {}
+    for symbol, name in notation.names.items():
+        for mark, count in DOTS.items():
+            dotted = symbol._replace(marks=mark)
+            is_free = notation.names.get(dotted, dotted.name) == dotted.name  # but for what the paper says
+            if name in ends and not symbol.marks and is_free and dotted.name not in own:
+                found[dotted] = product_of([power(Name(LAPLACE), count), Name(name)])
+    return found
+
+
+def _relations(sides: Sequence[Expression], model: Model) -> Iterator[dict[str, Expression]]:
+    """Yield the linear equations of two and more outputs that an equation states, by coefficients."""
+    outputs = {o.name for o in model.outputs}
+    ends = {i.name for i in model.inputs} | outputs
+    for i, left in enumerate(sides):
+        for right in sides[i + 1 :]:
+            parts = _coefficients(_cleared(left, right, ends), ends) or {}
+            relation = {name: sum_of(part) for name, part in parts.items()}
+            if len(outputs & set(relation)) > 1 and not any(is_number(e, 0) for e in relation.values()):
+                yield relation
+
+
+def _vanishing(sides: Sequence[Expression], model: Model) -> list[Expression]:
+    """Return the expressions that an equation without outputs and inputs says to be zero, but for names."""
+    ends = {end for pair in model.transfer_functions for end in pair}
+    if not any(is_number(side, 0) for side in sides) or any(_holds(x, e) for x in sides for e in ends):
+        return []
+    return [side for side in sides if not isinstance(side, Name) and not is_number(side, 0)]
+
+
+def _cleared(left: Expression, right: Expression, ends: Set[str]) -> Expression:
+    """Return what an equation says to be zero, without an output or an input below a line."""
+    for side, other in ((left, right), (right, left)):
+        if isinstance(side, Quotient) and any(_holds(side.denominator, end) for end in ends):
+            return sum_of([side.numerator, negative(product_of([other, side.denominator]))])
+    return sum_of([left, negative(right)])
+
+
 def _says_something(formula: Expression, pair: tuple[str, str]) -> bool:
     held = {n.name for n in names(formula) if isinstance(n, Name)}
     return bool(held) and not held & set(pair)
@@ -601,7 +734,7 @@ def _solved(
     for name in pair:
         split = [_split(rest, name) for rest in rests]
         if split[0] is None or split[1] is None:
-            return _superposed([left, negative(right)], pair, inputs)
+            return _superposed(_cleared(left, right, {*inputs, *pair}), pair, inputs)
         rests = [split[0][0], split[1][0]]
         powers.append(split[0][1] - split[1][1])
     if powers == [1, -1]:
@@ -609,27 +742,49 @@ def _solved(
     return _over(rests[0], rests[1]) if powers == [-1, 1] else None
 
 
-def _superposed(terms: Sequence[Expression], pair: tuple[str, str], inputs: Set[str]) -> Expression | None:
-    """Return the output over the input if these terms add to zero, all other inputs being zero."""
-    parts: dict[str, list[Expression]] = {name: [] for name in (*inputs, *pair)}
-    pending = [*terms]
-    while pending:
-        term = pending.pop(0)
-        inner = term.operand if isinstance(term, Negative) else term
-        if isinstance(inner, Sum):
-            pending[:0] = [negative(t) for t in inner.terms] if inner is not term else inner.terms
-            continue
-        held = [name for name in parts if _holds(term, name)]
-        split = _split(term, held[0]) if len(held) == 1 else None
-        if split is None or split[1] != 1:
-            return None
-        parts[held[0]].append(split[0])
-    output, given = (parts[name] for name in pair)
-    if not output or not given:
+def _superposed(zero: Expression, pair: tuple[str, str], inputs: Set[str]) -> Expression | None:
+    """Return the output over the input if an expression is zero, all other inputs being zero."""
+    parts = _coefficients(zero, {*inputs, *pair})
+    if parts is None or not all(parts.get(name) for name in pair):
         return None
+    output, given = (parts[name] for name in pair)
     turned = all(isinstance(part, Negative) for part in output)
     above, below = (given, map(negative, output)) if turned else (map(negative, given), output)
     return _over(sum_of(above), sum_of(below))
+
+
+def _coefficients(node: Expression, signals: Set[str]) -> dict[str, list[Expression]] | None:
+    """Return the terms that multiply each signal; ``None`` if an expression is no linear form of signals."""
+    held = [n.name for n in names(node) if n.name in signals]
+    if not held:
+        return {} if is_number(node, 0) else None
+    found: dict[str, list[Expression]] = {}
+    match node:
+        case Name(name):
+            return {name: [number(1)]}
+        case Negative(operand):
+            inner = _coefficients(operand, signals)
+            return None if inner is None else {k: [negative(t) for t in v] for k, v in inner.items()}
+        case Sum(terms):
+            for term in terms:
+                inner = _coefficients(term, signals)
+                if inner is None:
+                    return None
+                for name, part in inner.items():
+                    found.setdefault(name, []).extend(part)
+            return found
+        case Product(factors):
+            holding = [f for f in factors if any(_holds(f, name) for name in held)]
+            inner = _coefficients(holding[0], signals) if len(holding) == 1 else None
+            if inner is None:
+                return None
+            for name, part in inner.items():
+                found[name] = [product_of(sum_of(part) if f is holding[0] else f for f in factors)]
+            return found
+        case Quotient(above, below):
+            inner = None if any(_holds(below, name) for name in held) else _coefficients(above, signals)
+            return inner and {name: [_over(sum_of(part), below)] for name, part in inner.items()}
+    return None
 
 
 def _over(above: Expression, below: Expression) -> Expression:

@@ -321,3 +321,73 @@ def test_sides_before_a_sign_of_nearness_are_judged():
         "one of its sides is not judged: it holds only nearly, by its sign",
     )
     assert verdicts(r"\frac{Y}{U} \approx \frac{1}{RCs + 1}")[0][0] == "not read"
+
+
+CART = """
+symflex = 1
+parameters = { M = {}, m = {}, l = {}, I = {}, g = {}, b = {} }
+inputs = { u = { unit = "N" } }
+outputs = { X = "x", Phi = "phi" }
+[equations]
+unknowns = ["x", "phi"]
+equations = ["(M + m)*x'' + b*x' - m*l*phi'' = u", "(I + m*l^2)*phi'' - m*g*l*phi = m*l*x''"]
+"""
+CUBIC = r"((M+m)(I+ml^2) - m^2l^2)s^3 + b(I+ml^2)s^2 - (M+m)mgls - bmgl"
+
+
+@pytest.mark.parametrize(
+    ("latex", "verdict", "said"),
+    [
+        (r"\frac{X}{\Phi} = \frac{(I + ml^2)s^2 - mgl}{mls^2}", "equal", ""),
+        (r"X(s) = \left[\frac{I+ml^2}{ml} - \frac{g}{s^2}\right]\Phi(s)", "equal", ""),
+        (r"(I+ml^2)\ddot\phi - mgl\phi = ml\ddot x", "equal", ""),
+        (r"\frac{X + l\Phi}{\dot\phi} = \frac{(I + 2ml^2)s^2 - mgl}{mls^3}", "equal", ""),
+        (r"\frac{\dot\phi}{U} = \frac{mls^2}{CUBIC}", "equal", ""),
+        (r"CUBIC = 0", "equal", ""),
+        (r"\frac{X}{\Phi} = \frac{(I + ml^2)s^2 + mgl}{mls^2}", "different", "m*g*l should be -m*g*l"),
+        (r"(M+m)\ddot x + b\dot x - ml\phi = u", "different", "Phi should be -m*l*Phi*s^2"),
+        (r"(M-m)\ddot x = u + 3", "other model", ""),
+        (r"\dot x = u", "other model", ""),
+        (r"CUBIC + M = 0", "other model", ""),
+    ],
+)
+def test_equations_of_motion_ratios_of_outputs_and_characteristic_equations(latex, verdict, said):
+    # The cart's equations by hand: (I + m l^2) phi'' = m l (g phi + x''), (M + m) x'' + b x' = u + m l phi''.
+    (found,) = judged(loads(CART), f"\\[ {latex.replace('CUBIC', CUBIC)} \\]")
+    assert found.verdict == verdict
+    assert said in found.slip
+
+
+def test_a_characteristic_equation_is_not_judged_by_an_earlier_one():
+    paper = rf"\begin{{align}} \Delta(s) &= {CUBIC} = 0 \\ \Delta(s) &= {CUBIC} + M = 0 \end{{align}}"
+    assert [j.verdict for j in judged(loads(CART), paper)] == ["equal", "other model"]
+
+
+def test_an_output_is_a_fraction_of_a_sum_of_inputs():
+    said = verdicts(r"Y(s) = \frac{U(s) - D(s)}{RCs + 1}"), verdicts(r"Y(s) = \frac{U(s) + D(s)}{RCs + 1}")
+    assert [found for ((found, _),) in said] == ["equal", "factor"]
+
+
+def test_beside_the_imaginary_unit_omega_is_no_output_that_is_called_so():
+    spec = (
+        'symflex = 1\nparameters = { J = {}, b = {} }\ninputs = { T = {} }\noutputs = { Omega = "x" }\n'
+        'equations = { unknowns = ["x"], equations = ["J*x\' + b*x = T"] }'
+    )
+    paper = r"\frac{\Omega(j\omega)}{T(j\omega)} = \frac{1}{J j\omega + b}"
+    assert verdicts(paper, spec)[0][0] == "equal"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("sign", "verdict"), [("+", "equal"), ("-", "other model")])
+def test_a_beams_characteristic_equation_is_right_without_the_powers_of_its_wavenumber(sign, verdict):
+    spec = """
+symflex = 1
+parameters = { E = {}, I = {}, rho = {}, A = {}, l = {} }
+inputs = { F = { force = "tip" } }
+outputs = { Y = "tip" }
+[elements]
+wall = { type = "fixed", at = "root" }
+arm = { type = "beam", between = ["root", "tip"], E = "E", I = "I", rho = "rho", A = "A", l = "l" }
+"""
+    paper = rf"\[ 1 {sign} \cos\beta l\cosh\beta l = 0 \] where $\beta^4 = \rho A\omega^2/(EI)$."
+    assert judged(loads(spec), paper)[0].verdict == verdict
