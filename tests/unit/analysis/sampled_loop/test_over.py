@@ -55,6 +55,16 @@ def test_a_delay_of_computing_costs_stiffness():
     assert float(found.boundaries[0].gain) == pytest.approx(expected, rel=1e-10)
 
 
+@pytest.mark.parametrize("mass", [1, 100, 10_000])
+def test_damping_over_half_a_period_and_a_delay_bounds_the_stiffness_of_a_wall(mass):
+    # Gil, Sanchez, Hulin, Preusche, Hirzinger (2009): K < (b + B)/(T/2 + t_d) = 0.6/1.2 ms for low damping,
+    # which leaves terms of b T/m.
+    text = WALL.replace('period = "T"', 'period = "T"\ndelay = "0.7 ms"').replace("0.3 kg", f"{mass} kg")
+    text = text.replace("0.7 N*s/m", "0.1 N*s/m").replace("0.3 N*s/m", "0.5 N*s/m")
+    (boundary,) = loads(text).stability(over="K", limits=(1, 3000)).boundaries
+    assert float(boundary.gain) == pytest.approx(500, rel=6e-4 / mass)
+
+
 def test_a_pole_that_leaves_at_minus_one():
     # z = 1 - K T, so K = 2/T
     text = """symflex = 1
