@@ -13,7 +13,7 @@ those outside the unit circle.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, partial
@@ -21,6 +21,7 @@ from functools import cached_property, partial
 from flint import acb, acb_series, arb, fmpz_mpoly
 
 from symflex.algebra import LAPLACE, NO_KERNELS, Factored, Ring, degree_in
+from symflex.analysis.sampled_loop.distributed import distributed_pulse
 from symflex.analysis.sampled_loop.plant import PlantPulse
 from symflex.analysis.sampled_loop.pulse import pulse_function
 from symflex.analysis.sampled_loop.symbolic import BACK, Ends, Fixed, Timing, pulse_of, pulse_over
@@ -47,10 +48,11 @@ from symflex.model import ExactValue, Input, Model, ModelParameter, Output, Plac
 from symflex.model.model import Z
 from symflex.model.sampled import OpenedLoop, SampledChannel, opened
 from symflex.model.units import exact_expression
-from symflex.roots import PoleZeroMap
+from symflex.roots import PoleZeroMap, find_polynomial_roots
 from symflex.roots.locate import locate
 from symflex.roots.passivity import observed
-from symflex.roots.pole_zero_map import StabilityVerdict
+from symflex.roots.pole_zero_map import EXAMINED, StabilityVerdict
+from symflex.roots.problem import problem_of
 from symflex.roots.root import Root
 from symflex.state_space.sampled import Sampling
 from symflex.transfer import BoundTransferFunction, TransferFunction, bind
@@ -59,6 +61,8 @@ from symflex.transfer.enclose_kernels import KernelValues
 from symflex.transfer.of_model import derive_all
 
 COUNT_DIGITS = 15
+COUNT_DIGITS_OF_BEAMS = 6  # of roots whose coefficients are known to some twelve digits
+TOO_CLOSE = "a pole lies too close to the unit circle to decide"
 NO_PERIOD = "next to a period of 0 there is no end of frequencies"
 EACH = "ask at each value: --set NAME=VALUE"
 CLOSED, DRIVEN = "sampled loop", "reference"  # the function whose poles are those of the loop
@@ -75,6 +79,7 @@ class SampledLoop:
     tf: TransferFunction  # whose denominator is the characteristic function
     hidden: tuple[BoundTransferFunction, ...] = ()  # of the continuous part, with modes no controller sees
     plant: PlantPulse | None = None  # of a continuous part some of whose parameters are symbols
+    least: arb | None = None  # abs(z) from which on poles are known, of a continuous part with beams
 
     def characteristic(self, names: Sequence[str]) -> SampledCharacteristic:
         """Return the function whose roots are followed around the unit circle."""
@@ -184,7 +189,10 @@ class SampledCharacteristic(CharacteristicFunction):
         return not (piece[0] and ball(piece[1]) < self._half(box))
 
     def located(self, point: Sequence[Fraction | ExactValue], modes: int = 1) -> PoleZeroMap:
-        """Return the poles in the w plane at one point."""
+        """Return the poles in the w plane at one point; beside beams, what they say of stability alone."""
+        if self.loop.least is not None:
+            roots = roots_in_b(self.tf, dict(zip(self.names, point, strict=True)), COUNT_DIGITS_OF_BEAMS)
+            return replace(EXAMINED, verdict=inside(roots))
         if self.loop.plant is not None:
             at = dict(zip(self.names, point, strict=True))
             return located_in_w(sampled_loop(with_values(self.loop.model, at)).tf, {})
@@ -200,6 +208,31 @@ def located_in_w(
 
 def in_w(bound: BoundTransferFunction) -> BoundTransferFunction:
     """Return one over the characteristic function as a rational function of w, which its s stands for."""
+    return _rational(bound, _turned)
+
+
+def roots_in_b(tf: TransferFunction, values: Mapping[str, ExactValue | Fraction], digits: int) -> list[Root]:
+    """Return the roots of the characteristic function in ``b = 1/z``, enclosed; errors as of polynomials."""
+    bound = _rational(bind(tf, values), _kept)
+    factors = [(f, -e) for f, e in bound.ratio.factors if e < 0]
+    return [*find_polynomial_roots(problem_of(bound, factors), digits)]
+
+
+def inside(roots: Sequence[Root], unseen: StabilityVerdict = NONE) -> StabilityVerdict:
+    """Return what roots in b say of stability: those in the unit disc are poles outside of it in z."""
+    sides = [(1 if abs(r.enclosure()) > 1 else -1 if abs(r.enclosure()) < 1 else 0, r) for r in roots]
+    right = sum(root.multiplicity for side, root in sides if side < 0)
+    if any(not side for side, _ in sides):
+        found = StabilityVerdict("unknown", None, False, TOO_CLOSE, right)
+    else:
+        found = StabilityVerdict("unstable" if right else "stable", right, True, "", right)
+    return found.beside(unseen)
+
+
+def _rational(
+    bound: BoundTransferFunction, moved: Callable[[Ring, Ring, fmpz_mpoly, int], fmpz_mpoly]
+) -> BoundTransferFunction:
+    """Return one over the characteristic function with another variable in place of s and its delay."""
     ring = bound.ratio.ring
     (back,) = (ring.index[k.generator] for k in bound.kernels.kernels)
     small = Ring(tuple(n for i, n in enumerate(ring.names) if i != back))
@@ -208,8 +241,16 @@ def in_w(bound: BoundTransferFunction) -> BoundTransferFunction:
     den = Factored.number(small, 1)
     for factor, exponent in (*bound.den.factors, *unseen):
         if exponent > 0 and factor != ring.context.gen(back):  # b = 0 is z at infinity
-            den = den * Factored.polynomial(small, _turned(ring, small, factor, back)) ** exponent
+            den = den * Factored.polynomial(small, moved(ring, small, factor, back)) ** exponent
     return replace(bound, ratio=1 / den, hidden=(), kernels=NO_KERNELS, parts=None, is_of_model=False)
+
+
+def _kept(ring: Ring, small: Ring, factor: fmpz_mpoly, back: int) -> fmpz_mpoly:
+    """Return a polynomial in b as one in what s stands for."""
+    total = small.constant(0)
+    for power_of, part in enumerate(ring.coefficients(factor, back)):
+        total += small.taken_over(part, ring.names) * small.context.gen(0) ** power_of
+    return total
 
 
 def _turned(ring: Ring, small: Ring, factor: fmpz_mpoly, back: int) -> fmpz_mpoly:
@@ -249,11 +290,16 @@ def sampled_loop(model: Model, ranges: Mapping[str, Ends] | None = None) -> Samp
     bound = bind(tf.whole, {name: sum(symbolic[name]) / 2 for name in of_plant})
     delays = None if bound.is_rational else delayed_quotient(bound)
     if not bound.is_rational and (delays is None or len(delays.below) > 1):
-        message = "a sampled loop about beams, or about a delay in a continuous loop, is not available yet"
-        hint = "give the machine a few modes in place of beams, as 'symflex rational' prints them"
-        raise ModelError(Diagnostic("SF235", message, model.outputs[0].span, hint))
+        _check_known(model, [*of_plant, *_of_times(loop, symbolic)])
+        known = distributed_pulse(bound, Sampling(period), delay)
+        if isinstance(known, str):
+            message = f"a sampled loop about beams, or about a delay in a continuous loop: {known}"
+            hint = "give the machine a few modes in place of beams, as 'symflex rational' prints them"
+            raise ModelError(Diagnostic("SF235", message, model.outputs[0].span, hint))
+        closed = _closed(model, channel, loop.period, pulse_of(known[0]), symbolic)
+        return SampledLoop(model, loop, period, delay, closed, (bound,), least=known[1])
     timing = Timing(loop.period, loop.delay, numbers, symbolic)
-    of_times = [name for name in symbolic if any(names_among(e, {name}) for e in (loop.period, loop.delay))]
+    of_times = _of_times(loop, symbolic)
     if of_plant or (of_times and bound.is_rational):
         _check_followed(model, tf.whole, of_plant)
         function = CharacteristicFunction.of(machine, tf.whole, list(dict.fromkeys((*of_plant, *of_times))))
@@ -267,6 +313,19 @@ def sampled_loop(model: Model, ranges: Mapping[str, Ends] | None = None) -> Samp
         pulse = pulse_of(pulse_function(bound, Sampling(period), delay))
     tf = _closed(model, channel, loop.period, pulse, symbolic)
     return SampledLoop(model, loop, period, delay, tf, (bound,))
+
+
+def _of_times(loop: OpenedLoop, names: Iterable[str]) -> list[str]:
+    """Return which parameters are of the period or the delay."""
+    return [name for name in names if any(names_among(e, {name}) for e in (loop.period, loop.delay))]
+
+
+def _check_known(model: Model, names: Iterable[str]) -> None:
+    """Refuse parameters of a continuous part with beams, and times beside one; SF801."""
+    for name in names:
+        span = next(p.span for p in model.parameters if p.name == name)
+        message = f"'{name}' is a parameter of a continuous part with beams, or a time beside one"
+        raise ModelError(Diagnostic("SF801", message, span, EACH))
 
 
 def _time(model: Model, expression: Expression, numbers: Mapping[str, ExactValue]) -> Fraction:

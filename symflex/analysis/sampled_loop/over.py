@@ -19,6 +19,9 @@ from symflex.options import StabilityOptions, share_of
 from symflex.print.text import INDENT, Passage
 from symflex.transfer import Given
 
+DIGITS, MOST_DIGITS = 15, 1000  # of boundaries; at most, as the option says
+DIGITS_BESIDE_BEAMS = 8  # of boundaries: coefficients of a machine with beams are known to some twelve
+
 
 def sampled_stability(
     model: Model, given: StabilityOptions, values: Mapping[str, Given] | None = None
@@ -34,7 +37,8 @@ def sampled_stability(
     if len(names) > 1:
         chart = find_chart(function, limits, nominal, parameters, float(share_of(given.resolve, "--resolve")))
         return SampledChart(**_parts_of(chart), sampled=described(loop))
-    digits = given.digits or model.analysis.digits or 15
+    most = MOST_DIGITS if loop.least is None else DIGITS_BESIDE_BEAMS
+    digits = min(given.digits or model.analysis.digits or DIGITS, most)
     found = find_intervals(function, limits[0], digits, parameters[0], nominal[0])
     apart = loop.apart
     unseen = PoleCount(apart.right or 0, 0)

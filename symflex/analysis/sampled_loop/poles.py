@@ -16,7 +16,14 @@ from fractions import Fraction
 
 from flint import acb, arb
 
-from symflex.analysis.sampled_loop.closed import SampledLoop, described, located_in_w, sampled_loop
+from symflex.analysis.sampled_loop.closed import (
+    SampledLoop,
+    described,
+    inside,
+    located_in_w,
+    roots_in_b,
+    sampled_loop,
+)
 from symflex.balls import ball, precision
 from symflex.loops.over import with_values
 from symflex.model import Model
@@ -71,6 +78,7 @@ class SampledPoles(Printed):
     verdict: StabilityVerdict
     digits: int
     hidden: tuple[SampledPole, ...] = ()  # of the continuous part, that the controller does not see or move
+    least: arb | None = None  # abs(z) from which on poles are listed: infinitely many lie nearer to 0
 
     def __repr__(self) -> str:
         return f"<SampledPoles: {self.count} poles, {self.sentence}>"
@@ -93,7 +101,8 @@ class SampledPoles(Printed):
     def passages(self) -> Iterator[Passage]:
         """Return the verdict and the poles."""
         status = "certified" if self.certified else "NOT CERTIFIED"
-        lines = [f"sampled loop   {status}: {self.count} poles in z", f"{INDENT}{self.sampled}"]
+        far = "" if self.least is None else f" with abs(z) above {float(self.least):.3g}"
+        lines = [f"sampled loop   {status}: {self.count} poles in z{far}", f"{INDENT}{self.sampled}"]
         yield Passage([*lines, f"{INDENT}{self.sentence}"])
         yield Passage([f"{INDENT}poles, s = ln(z)/T"], self._rows(self.poles))
         if self.hidden:
@@ -128,6 +137,7 @@ class SampledPoles(Printed):
             "sampled": self.sampled,
             "period": float(self.period),
             "count": self.count,
+            "least_abs": None if self.least is None else float(self.least),
             "certified": self.certified,
             "verdict": self.sentence,
             "stable": None if self.verdict.word == "unknown" else self.verdict.word == "stable",
@@ -165,11 +175,19 @@ def sampled_poles(
     """Return the poles of the sampled loop of a model, each enclosed to so many digits."""
     digits = digits or model.analysis.digits or SHORT_DIGITS
     loop = sampled_loop(with_values(model, values))
-    located = located_in_w(loop.tf, {}, digits + GUARD_DIGITS)
-    poles = [_pole(root, loop) for root in located.all_poles if not root.im < 0]
-    verdict = located.verdict.beside(loop.apart)
+    if loop.least is None:
+        located = located_in_w(loop.tf, {}, digits + GUARD_DIGITS)
+        verdict = located.verdict.beside(loop.apart)
+        poles = [_pole(root, loop) for root in located.all_poles if not root.im < 0]
+    else:  # nearer to 0 the function is another
+        roots = roots_in_b(loop.tf, {}, digits)
+        verdict = inside(roots, loop.apart)
+        poles = [_pole_of_b(root, loop) for root in roots if not root.im > 0]  # z has the other sign
+        poles = [pole for pole in poles if pole.size > loop.least]
     hidden = [_in_z_of(root, loop) for root in loop.unseen if not root.im < 0]
-    return SampledPoles(described(loop), loop.period, _sorted(poles), verdict, digits, _sorted(hidden))
+    return SampledPoles(
+        described(loop), loop.period, _sorted(poles), verdict, digits, _sorted(hidden), loop.least
+    )
 
 
 def _sorted(poles: Iterable[SampledPole]) -> tuple[SampledPole, ...]:
@@ -191,16 +209,27 @@ def _short(value: acb, is_pair: bool) -> str:
 
 
 def _pole(root: Root, loop: SampledLoop) -> SampledPole:
+    """Return the pole that a root in w is."""
     with precision(2 * root.working_bits() + 64):
         w = root.enclosure()
-        z = (1 + w) / (1 - w)
         side = 0 if root.on_imaginary_axis else 1 if root.re > 0 else -1
-        if root.is_real:
-            z = acb(z.real)
-        size = arb(1) if not side else abs(z)
-        s = None if z.contains(0) else z.log() / ball(loop.period)
-        if s is not None and not side:
-            s = acb(arb(0), s.imag)
-        if s is not None and root.is_real and z.real > 0:
-            s = acb(s.real)
+        return _at((1 + w) / (1 - w), side, root, loop)
+
+
+def _pole_of_b(root: Root, loop: SampledLoop) -> SampledPole:
+    """Return the pole that a root in ``b = 1/z`` is."""
+    with precision(2 * root.working_bits() + 64):
+        z = 1 / root.enclosure()
+        return _at(z, 1 if abs(z) > 1 else -1, root, loop)
+
+
+def _at(z: acb, side: int, root: Root, loop: SampledLoop) -> SampledPole:
+    if root.is_real:
+        z = acb(z.real)
+    size = arb(1) if not side else abs(z)
+    s = None if z.contains(0) else z.log() / ball(loop.period)
+    if s is not None and not side:
+        s = acb(arb(0), s.imag)
+    if s is not None and root.is_real and z.real > 0:
+        s = acb(s.real)
     return SampledPole(z, size, s, root.multiplicity, not root.is_real, side)
