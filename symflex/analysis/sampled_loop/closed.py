@@ -324,7 +324,7 @@ def _check_known(model: Model, names: Iterable[str]) -> None:
     """Refuse parameters of a continuous part with beams, and times beside one; SF801."""
     for name in names:
         span = next(p.span for p in model.parameters if p.name == name)
-        message = f"'{name}' is a parameter of a continuous part with beams, or a time beside one"
+        message = f"'{name}' is a parameter of a continuous part with beams or delays, or a time beside one"
         raise ModelError(Diagnostic("SF801", message, span, EACH))
 
 

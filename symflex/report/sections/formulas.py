@@ -106,7 +106,8 @@ def motion_section(study: Study) -> ChapterPart | None:
     runs = list[Run]()
     for name, value in point.values:
         still = name.rstrip("'")
-        runs += [", " if runs else "At equilibrium, ", *shown(Name(still), value, "′" * (len(name) - len(still)))]
+        begins = ", " if runs else "At equilibrium, "
+        runs += [begins, *shown(Name(still), value, "′" * (len(name) - len(still)))]
     blocks = [text(*runs, ". The names below stand for deviations from equilibrium:")] if runs else []
     solved = list[Run]()
     for name, shown_value in solved_values(study.model):

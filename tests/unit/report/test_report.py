@@ -192,14 +192,16 @@ def test_a_nonlinear_model_has_its_linear_equations_before_what_follows_from_the
     said = "".join(r if isinstance(r, str) else r.latex for r in solved.runs)
     assert said.startswith(r"Solved at equilibrium: \tau_{0} = 1.50000 N*m (radius ")  # 3 sin 30 deg
     said = "".join(r if isinstance(r, str) else r.latex for r in rest.runs)
-    assert said == r"At equilibrium, \theta = q, \tau = \tau_{0}. The names below stand for deviations from equilibrium:"
+    below = "The names below stand for deviations from equilibrium:"
+    assert said == rf"At equilibrium, \theta = q, \tau = \tau_{{0}}. {below}"
     assert equation.runs[0].latex == r"J s^{2} \theta + w \, \cos(q) \, \theta"
     assert list(SECTIONS).index("motion") < list(SECTIONS).index("equations")
 
 
 def test_every_section_of_the_registry_is_in_a_full_chapter_and_a_single_model_is_not_compared(hostile):
     anchors = set(Page(report_page(hostile)).ids)
-    assert {f"hostile-{key}" for key in SECTIONS if key not in ("loops", "data", "motion", "sampled")} <= anchors
+    others = ("loops", "data", "motion", "sampled")
+    assert {f"hostile-{key}" for key in SECTIONS if key not in others} <= anchors
     assert "comparison" not in anchors
 
 
