@@ -47,6 +47,7 @@ from symflex.expressions import (
     is_number,
     names,
     negative,
+    nodes,
     number,
     power,
     product_of,
@@ -260,9 +261,12 @@ class _Court:
             for tf, formula in claims:
                 try:
                     if is_tied:
-                        judged.append(self.by_letter(item, model, letter, formula, notation))
+                        found = self.by_letter(item, model, letter, formula, notation)
                     else:
-                        judged.append(self.best(item, model, tf, formula, notation))
+                        found = self.best(item, model, tf, formula, notation)
+                    if not isinstance(sides[0], Quotient) and (has_dots or not _holds(formula, LAPLACE)):
+                        _check_whole(found)
+                    judged.append(found)
                 except (_Unjudged, SpecError) as reason:
                     missed.append(reason)
                     later += [formula] if tf is None and not is_tied else []
@@ -368,15 +372,19 @@ class _Court:
             terms += [relation[given]] if given in relation else []
             formula = _over(negative(sum_of(terms)), relation[first])
             lines = self.lines(substitute(formula, dict.fromkeys(others, number(1))), model, notation, where)
-            lines += tuple((name, quotient(*self.parts(model, (name, given)))) for name in others)
-            printed = Published((first, given), formula, lines, None, "", where, is_latex=True)
+            derived = [(name, quotient(*self.parts(model, (name, given)))) for name in others]
+            scale = derived[0][1] if len(others) == 1 and given not in relation else None
+            if scale is not None:  # of a ratio, what is printed is apart from what is derived
+                formula = _over(negative(relation[others[0]]), relation[first])
+            lines += () if scale is not None else tuple(derived)
+            printed = Published((first, given), formula, lines, scale, "", where, is_latex=True)
             audit = replace(self.audit(model, printed), derived=None)
-            if any(c.place in {f"line {name}" for name in others} for c in audit.changes):
+            if {c.place for c in audit.changes} & {"scale", *(f"line {name}" for name in others)}:
                 audit = replace(audit, correction=None)  # what is derived is no slip of the paper
             judged = _judged(item, model, audit)
             said = f"it relates {' and '.join(outputs)}, for {given}"
             found.append(replace(judged, reason=f"{judged.reason}; {said}" if judged.reason else said))
-        best = (max if inputs else min)(found, key=_rank)
+        best = (max if inputs else min)(found, key=lambda j: (*_rank(j), _size(j)))
         if best.verdict == "different" and not best.slip and len(relation) > 2:  # noqa: PLR2004
             raise _Unjudged("other model", "it does not hold in the models, and no small change is known")
         return best
@@ -690,6 +698,18 @@ def _relations(sides: Sequence[Expression], model: Model) -> Iterator[dict[str, 
                 yield relation
 
 
+def _check_whole(judged: JudgedFormula) -> None:
+    """Refuse what may be one force of an equation of motion, F = b dx/dt: parameters are not in it."""
+    if judged.verdict == "different" and judged.audit is not None:
+        formula = judged.audit.formula
+        held = {n.name for e in (formula.whole, *(e for _, e in formula.lines)) for n in names(e)}
+        missing = [p.name for p in judged.audit.tf.parameters if p.name not in held]
+        if missing:
+            said = f"it has no {', '.join(missing)}, and may be about a part of the model"
+            near = f"; {judged.audit.tf.name} would need: {_changes_said(judged.audit)}"
+            raise _Unjudged("other model", said + (near if judged.audit.changes else ""))
+
+
 def _vanishing(sides: Sequence[Expression], model: Model) -> list[Expression]:
     """Return the expressions that an equation without outputs and inputs says to be zero, but for names."""
     ends = {end for pair in model.transfer_functions for end in pair}
@@ -825,6 +845,12 @@ def _rank(judged: JudgedFormula) -> tuple[int, int]:
     return _ORDER.index(judged.verdict), changes or 99
 
 
+def _size(judged: JudgedFormula) -> int:
+    """Return how much changes of a formula put in the place of what is printed."""
+    changes = judged.audit.changes if judged.audit is not None else ()
+    return sum(len(nodes(e)) for c in changes for e in (c.printed, c.derived))
+
+
 def _judged(item: _Item, model: Model, audit: Audit) -> JudgedFormula:
     """Return what an audit says of a formula."""
     found = JudgedFormula(item.latex, item.label, item.equation.span, "not read", model=model, audit=audit)
@@ -945,6 +971,7 @@ def _with_scale(judged: JudgedFormula, scales: Iterable[Expression]) -> JudgedFo
         or audit.changes
         or audit.taken
         or audit.ratio is not None
+        or audit.published.scale is not None
     ):
         return judged
     for ratio in scales:
@@ -1049,7 +1076,7 @@ def _heading(where: str) -> str:
 
 def _shown(j: JudgedFormula) -> Iterator[Block]:
     yield marked(Badge(j.said, SAID[j.verdict][1]), "; ".join(filter(None, (j.slip, j.reason))))
-    if j.audit is None or j.model is None:
+    if j.audit is None or j.model is None or j.audit.published.scale is not None:
         yield text(Code(" ".join(j.latex.split())))
         return
     labels = _labels(j.audit, j.model)
@@ -1104,7 +1131,7 @@ def errata_latex(judged: Sequence[JudgedFormula]) -> str:
         said = [j.misprint, *said] if j.misprint else said
         if best.ratio is not None:
             said.append(f"divide the right side by ${latex_expression(best.ratio, labels)}$")
-        elif best.published.scale is not None:
+        elif best.published.scale is not None and best is j.repaired:
             said.append(f"multiply the right side by ${latex_expression(best.published.scale, labels)}$")
         said += [f"it holds where {best.taken}"] if best.taken else []
         right = best.correction.expression if best.correction is not None else best.derived

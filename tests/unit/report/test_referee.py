@@ -363,6 +363,27 @@ def test_a_characteristic_equation_is_not_judged_by_an_earlier_one():
     assert [j.verdict for j in judged(loads(CART), paper)] == ["equal", "other model"]
 
 
+def test_one_force_of_an_equation_of_motion_is_not_called_wrong():
+    spec = OSCILLATOR.replace(', zeta = "0.3", omega_0 = "3 rad/s"', "")
+    ((found, reason),) = verdicts(r"F = c\dot x", spec)
+    assert (found, "it has no m, k" in reason) == ("other model", True)
+    assert verdicts(r"m\ddot x + c\dot x - kx = F", spec)[0][0] == "different"
+
+
+def test_a_ratio_of_outputs_is_compared_for_the_input_that_explains_it_best():
+    spec = """
+symflex = 1
+parameters = { J = {}, K = {}, c = {} }
+inputs = { M = {}, T = {} }
+outputs = { A = "a", B = "b" }
+[equations]
+unknowns = ["a", "b"]
+equations = ["J*a'' + c*(a - b) = M", "K*b'' + c*(b - a) = T"]
+"""
+    (found,) = judged(loads(spec), r"\[ \frac{B}{A} = \frac{c}{Js^2 + c} \]")
+    assert (found.verdict, found.slip) == ("different", "denominator: J should be K")
+
+
 def test_an_output_is_a_fraction_of_a_sum_of_inputs():
     said = verdicts(r"Y(s) = \frac{U(s) - D(s)}{RCs + 1}"), verdicts(r"Y(s) = \frac{U(s) + D(s)}{RCs + 1}")
     assert [found for ((found, _),) in said] == ["equal", "factor"]
