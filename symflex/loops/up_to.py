@@ -44,6 +44,7 @@ from symflex.budget import spend
 from symflex.expressions import names_among
 from symflex.loops.boxes import (
     BITS,
+    COUNT_DIGITS,
     Box,
     CharacteristicFunction,
     Ends,
@@ -55,7 +56,8 @@ from symflex.loops.boxes import (
 from symflex.loops.patches import FINER_BITS, ROOM, ULP, Bound, Patch, patch
 from symflex.loops.stability_map import PoleCount
 from symflex.roots.distributed.right_half_plane import WAVES
-from symflex.roots.functions.kernel_function import ANYWHERE, KernelFunction
+from symflex.roots.distributed.side import polynomial_roots
+from symflex.roots.functions.kernel_function import ANYWHERE, KernelFunction, split_off_kernels
 from symflex.roots.pole_zero_map import StabilityVerdict
 from symflex.roots.root import exact_fraction
 
@@ -446,6 +448,8 @@ class PolesUpTo:
         tf, _ = self.function.at_rest
         at_rest = tf.den.exponent_of(tf.ratio.ring.generator(LAPLACE))  # powers of s beside the factors
         total, values = PoleCount(0, at_rest), self._on(tuple((x, x) for x in point))
+        if self._may_cancel(tuple((x, x) for x in point)):
+            return None
         with suppress(UndecidedError):
             for factor, (_, exponent) in enumerate(self._factors):
                 factor_poles = self._count(values, factor, circle)
@@ -454,6 +458,22 @@ class PolesUpTo:
                 total += PoleCount(exponent * factor_poles.right, exponent * factor_poles.axis)
             return total
         return None
+
+    def _may_cancel(self, point: Box) -> bool:
+        """Tell whether a root of s alone, not in the left half-plane, may belong to how a load is written.
+
+        A load along a member is divided by c_0 of its waves. The numerator vanishes where c_0 does, but
+        contains no such factor. A root at which the numerator differs from 0 is a pole.
+        """
+        tf, _ = self.function.at_rest
+        plain, _ = split_off_kernels(tf.den, tf.kernels)
+        roots = polynomial_roots(self.function.bound_in(tf, point), plain, COUNT_DIGITS)
+        right = [root for root in roots if not root.re < 0]
+        above = [f for f, _ in tf.num.factors]
+        with precision(self.bits):
+            values = FirstOrder(replace(self.function, is_modal=False), tf, tuple(above), point)
+            at = (values.at(root.enclosure(), range(len(above))) for root in right)
+            return any(value.contains(0) for found in at for value, _ in found)
 
     def _count(self, values: PartValues, factor: int, circle: Fraction) -> PoleCount | None:
         """Return the same of one factor, all over the disc if one half-plane mirrors the other."""

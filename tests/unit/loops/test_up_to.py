@@ -218,6 +218,25 @@ def test_up_to_a_frequency_a_chart_is_decided_on_both_sides_of_a_boundary():
     assert chart.boundaries == [] and chart.to_json_dict()["counted_up_to_rad_per_s"] == chart.radius
 
 
+def test_a_load_along_a_beam_adds_no_pole_where_its_waves_vanish():
+    # The beam is stable up to Omega = pi^2 sqrt(EI/(m L^4)), whatever loads it: sin(pi x/L) has the stiffness
+    # EI pi^4/L^4 - m Omega^2. A load q is divided by m*s^2 + c*s - m*Omega^2, which has a root on the right.
+    spin = """
+symflex = 1
+parameters = { EI = 1, tau = 0.01, c = 0.5, m = 1, L = 1, Omega = 2 }
+inputs = { q = {} }
+outputs = { Y = "w(0.7*L)" }
+[fields.w]
+domain = ["0", "L"]
+equation = "EI*(1 + tau*s)*w'''' + (m*s^2 + c*s - m*Omega^2)*w = q"
+conditions = ["w(0) = 0", "w''(0) = 0", "w(L) = 0", "w''(L) = 0"]
+"""
+    found = loads(spin).stability(over="Omega", limits=(1, 5))
+    assert found.is_stable is not False
+    for part in found.proved.intervals:
+        assert part.poles.right == 0
+
+
 @pytest.mark.slow
 def test_a_pipe_flutters_at_the_speed_of_gregory_and_paidoussis():
     found = loads(PIPE).stability(over="U", limits=(5, 6), up_to_hz=5)
