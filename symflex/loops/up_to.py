@@ -448,7 +448,8 @@ class PolesUpTo:
         tf, _ = self.function.at_rest
         at_rest = tf.den.exponent_of(tf.ratio.ring.generator(LAPLACE))  # powers of s beside the factors
         total, values = PoleCount(0, at_rest), self._on(tuple((x, x) for x in point))
-        if self._may_cancel(tuple((x, x) for x in point)):
+        cancelled = self._cancelled_on_axis(tuple((x, x) for x in point), circle)
+        if cancelled is None:
             return None
         with suppress(UndecidedError):
             for factor, (_, exponent) in enumerate(self._factors):
@@ -456,11 +457,15 @@ class PolesUpTo:
                 if factor_poles is None:
                     return None
                 total += PoleCount(exponent * factor_poles.right, exponent * factor_poles.axis)
-            return total
+            axis = total.axis - cancelled
+            # That they cancel is not proved: nothing is called stable for it.
+            if axis < 0 or (cancelled and not axis and not total.right):
+                return None
+            return PoleCount(total.right, axis)
         return None
 
-    def _may_cancel(self, point: Box) -> bool:
-        """Tell whether a root of s alone, not in the left half-plane, may belong to how a load is written.
+    def _cancelled_on_axis(self, point: Box, circle: Fraction) -> int | None:
+        """Return how many roots of s alone on the axis may be of how a load is written; None if others may.
 
         A load along a member is divided by c_0 of its waves. The numerator vanishes where c_0 does, but
         contains no such factor. A root at which the numerator differs from 0 is a pole.
@@ -468,12 +473,19 @@ class PolesUpTo:
         tf, _ = self.function.at_rest
         plain, _ = split_off_kernels(tf.den, tf.kernels)
         roots = polynomial_roots(self.function.bound_in(tf, point), plain, COUNT_DIGITS)
-        right = [root for root in roots if not root.re < 0]
         above = [f for f, _ in tf.num.factors]
+        count = 0
         with precision(self.bits):
             values = FirstOrder(replace(self.function, is_modal=False), tf, tuple(above), point)
-            at = (values.at(root.enclosure(), range(len(above))) for root in right)
-            return any(value.contains(0) for found in at for value, _ in found)
+            for root in roots:
+                at = values.at(root.enclosure(), range(len(above)))
+                size = root.natural_frequency()
+                if root.re < 0 or size > ball(circle) or not any(value.contains(0) for value, _ in at):
+                    continue
+                if not (root.on_imaginary_axis and size < ball(circle)):
+                    return None
+                count += root.multiplicity
+        return count
 
     def _count(self, values: PartValues, factor: int, circle: Fraction) -> PoleCount | None:
         """Return the same of one factor, all over the disc if one half-plane mirrors the other."""

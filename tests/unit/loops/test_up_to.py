@@ -17,6 +17,7 @@ from symflex import loads
 from symflex.balls import precision, series_terms
 from symflex.loops.over import characteristic
 from symflex.loops.patches import patch
+from symflex.loops.stability_map import PoleCount
 from symflex.loops.up_to import BoxesUpTo, Path, PolesUpTo
 
 BECK, BECK_OMEGA = 20.0509536189737, 11.0155576409229  # EI/l^2, rad/s
@@ -439,6 +440,8 @@ def test_a_critical_load_is_that_of_the_book(parameters, equation, ends, limits,
     first, second = ends
     text = CLAMPED.format(parameters=parameters, equation=equation, at=at, first=first, second=second)
     found = loads(text).stability(over=parameters[0], limits=limits, up_to_hz=up_to_hz, digits=12)
+    # Modes on the axis meet and leave it, or one leaves it through 0; the load itself has no poles.
+    assert [part.poles for part in found.proved.intervals] == [PoleCount(0, 2 * change), PoleCount(change, 0)]
     (boundary,) = found.proved.boundaries
     assert float(boundary.gain.mid()) == pytest.approx(value, rel=1e-11)
     assert [float(w.mid()) for w in boundary.frequencies] == pytest.approx([omega], rel=1e-10)
