@@ -674,7 +674,7 @@ class RefereeOptions:
     allow_outside: Places = option((), "--allow-outside", **OUTSIDE)
     output: str | None = file_option("Page to write, .html: each formula with its verdict.")
     errata: str | None = option(None, "--errata", is_path=True, help="List of errata to write, as LaTeX.")
-    strict: bool = option(False, "--strict", help="Exit with code 4 unless every formula is right.")
+    strict: bool = option(False, "--strict", help="Exit with code 4 unless every formula and table is right.")
     as_json: bool = option(False, "--json", **JSON)
 
 
@@ -691,7 +691,7 @@ class AuditOptions:
     equation: str | None = option(
         None, "--equation", metavar="LABEL", help="With --latex: only the equation with this label or tag."
     )
-    strict: bool = option(False, "--strict", help="Exit with code 4 unless every formula is proved equal.")
+    strict: bool = option(False, "--strict", help="Exit with code 4 unless every formula and table is right.")
     as_json: bool = option(False, "--json", **JSON)
 
 
