@@ -385,7 +385,8 @@ class _Court:
             said = f"it relates {' and '.join(outputs)}, for {given}"
             found.append(replace(judged, reason=f"{judged.reason}; {said}" if judged.reason else said))
         best = (max if inputs else min)(found, key=lambda j: (*_rank(j), _size(j)))
-        if best.verdict == "different" and not best.slip and len(relation) > 2:  # noqa: PLR2004
+        _, _, *more = relation  # with two it is a ratio; a sum may be about another model
+        if best.verdict == "different" and not best.slip and more:
             raise _Unjudged("other model", "it does not hold in the models, and no small change is known")
         return best
 

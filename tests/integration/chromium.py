@@ -1,8 +1,11 @@
-"""Pages opened in Chromium, which is driven through a pipe by the DevTools protocol."""
+"""Pages served and opened in Chromium, which is driven through a pipe by the DevTools protocol."""
 
+import functools
+import http.server
 import json
 import os
 import subprocess
+import threading
 from itertools import count
 
 FLAGS = ("--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--no-first-run")
@@ -81,3 +84,21 @@ class Chromium:
         return [by_kind[kind] for kind in SAID if by_kind[kind]], [
             e["request"]["url"] for e in by_kind[ASKED]
         ]
+
+
+class Quiet(http.server.SimpleHTTPRequestHandler):
+    """Serves files, and says nothing."""
+
+    extensions_map = http.server.SimpleHTTPRequestHandler.extensions_map | {".mjs": "text/javascript"}
+
+    def log_message(self, *_):
+        pass
+
+
+def serving(folder):
+    """Return a server of a folder's files, which runs."""
+    served = http.server.ThreadingHTTPServer(
+        ("127.0.0.1", 0), functools.partial(Quiet, directory=str(folder))
+    )
+    threading.Thread(target=served.serve_forever, daemon=True).start()
+    return served

@@ -5,17 +5,13 @@ the kernel and of SymPy in ``notebook`` below it. Everything is served from this
 wheel of numpy, the page's own part of numpy stands in for it.
 """
 
-import functools
 import hashlib
-import http.server
-import importlib.util
 import inspect
 import json
 import os
 import re
 import subprocess
 import sys
-import threading
 import time
 import zipfile
 from pathlib import Path
@@ -24,13 +20,11 @@ from urllib.parse import quote
 import pytest
 
 import symflex
-from tests.conftest import REASON, REQUIRE_TOOLS
 from tests.house.repository import ROOT
-from tests.integration.chromium import Chromium
+from tests.integration.chromium import Chromium, serving
 
 RUNTIME = os.environ.get("SYMFLEX_WEBASSEMBLY")
 PYODIDE = "pyodide.mjs pyodide.asm.mjs pyodide.asm.wasm python_stdlib.zip".split()
-LITE = ("jupyterlite_core", "jupyterlite_pyodide_kernel")
 KERNEL = "@jupyterlite/pyodide-kernel-extension:kernel"
 MODEL = (ROOT / "derivations" / "mechatronics" / "elastic_joint.toml").read_text(encoding="utf-8")
 BROKEN = MODEL.replace("unknowns", "unknwons", 1)
@@ -58,17 +52,9 @@ MINUTES = 5
 pytestmark = [
     pytest.mark.slow,
     pytest.mark.needs_tool("chromium"),
+    pytest.mark.needs_module("jupyterlite_core", "jupyterlite_pyodide_kernel"),
     pytest.mark.skipif(not RUNTIME, reason="SYMFLEX_WEBASSEMBLY names no folder with Pyodide"),
 ]
-
-
-class Quiet(http.server.SimpleHTTPRequestHandler):
-    """Serves files, and says nothing."""
-
-    extensions_map = http.server.SimpleHTTPRequestHandler.extensions_map | {".mjs": "text/javascript"}
-
-    def log_message(self, *_):
-        pass
 
 
 def wheel(folder, name, version, sources):
@@ -119,11 +105,6 @@ def locked(wheels):
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
-    lacking = [name for name in LITE if importlib.util.find_spec(name) is None]
-    if lacking and os.environ.get(REQUIRE_TOOLS) == "1":
-        pytest.fail(f"{REASON} {lacking[0]}, which is not installed, and {REQUIRE_TOOLS}=1", pytrace=False)
-    if lacking:
-        pytest.skip(f"{REASON} {lacking[0]}, which is not installed")
     folder = tmp_path_factory.mktemp("lite")
     served = folder / "static" / "pyodide"
     served.mkdir(parents=True)
@@ -166,8 +147,7 @@ def site(tmp_path_factory):
 @pytest.fixture(scope="module")
 def shown(site, tmp_path_factory):
     """What a cell that runs :data:`CELL` shows, and the addresses that were asked for."""
-    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Quiet, directory=str(site)))
-    threading.Thread(target=server.serve_forever, daemon=True).start()
+    server = serving(site)
     browser = Chromium(tmp_path_factory.mktemp("chromium"))
     host = f"http://127.0.0.1:{server.server_address[1]}"
     browser.ask("Page.navigate", url=f"{host}/repl/index.html?kernel=python&code={quote(CELL)}")

@@ -1,6 +1,5 @@
 """What a notebook shows: a kernel runs it, and its outputs are read back."""
 
-import importlib.util
 import json
 import math
 import os
@@ -10,10 +9,9 @@ import sys
 
 import pytest
 
-from tests.conftest import REASON, REQUIRE_TOOLS
 from tests.house.repository import ROOT
 
-PACKAGES = ("nbclient", "ipykernel")
+needs_kernel = pytest.mark.needs_module("nbclient", "ipykernel")
 CELLS = (
     "import numpy as np, symflex\n"
     "model = symflex.load('derivations/eppinger1988/sliding_free_beam.toml'); model",
@@ -39,11 +37,6 @@ NOTEBOOKS = sorted((ROOT / "docs" / "notebooks").glob("*.ipynb"))
 @pytest.fixture(scope="module")
 def executed(tmp_path_factory):
     """The cells of the notebook above and of those of the documentation, each run in a kernel, by name."""
-    lacking = [name for name in PACKAGES if importlib.util.find_spec(name) is None]
-    if lacking and os.environ.get(REQUIRE_TOOLS) == "1":
-        pytest.fail(f"{REASON} {lacking[0]}, which is not installed, and {REQUIRE_TOOLS}=1", pytrace=False)
-    if lacking:
-        pytest.skip(f"{REASON} {lacking[0]}, which is not installed")
     folder = tmp_path_factory.mktemp("notebooks")
     cell = {"cell_type": "code", "metadata": {}, "execution_count": None, "outputs": []}
     cells = [{**cell, "id": f"c{i}", "source": source} for i, source in enumerate(CELLS)]
@@ -75,6 +68,7 @@ def text(lines):
 
 
 @pytest.mark.slow
+@needs_kernel
 def test_each_object_shows_in_its_own_way(outputs):
     kinds = [set(data) - {"text/plain"} for data in outputs]
     html, latex, svg, png = {"text/html"}, {"text/latex"}, {"image/svg+xml"}, {"image/png"}
@@ -82,11 +76,13 @@ def test_each_object_shows_in_its_own_way(outputs):
 
 
 @pytest.mark.slow
+@needs_kernel
 def test_a_model_shows_its_parameters(outputs):
     assert "<code>rho</code>" in text(outputs[0]["text/html"])
 
 
 @pytest.mark.slow
+@needs_kernel
 def test_a_transfer_function_shows_as_an_equation(outputs):
     latex = text(outputs[1]["text/latex"])
     assert latex.startswith(r"$\displaystyle \begin{aligned}")
@@ -94,6 +90,7 @@ def test_a_transfer_function_shows_as_an_equation(outputs):
 
 
 @pytest.mark.slow
+@needs_kernel
 def test_poles_and_zeros_show_as_a_table(outputs):
     html = text(outputs[3]["text/html"])
     # tan q + tanh q = 0 first at q = 2.365020372, omega = q^2 sqrt(E I/(rho A))/l^2
@@ -103,6 +100,7 @@ def test_poles_and_zeros_show_as_a_table(outputs):
 
 
 @pytest.mark.slow
+@needs_kernel
 def test_a_response_shows_as_a_drawing_and_a_long_one_as_a_raster(outputs):
     assert "<svg" in text(outputs[4]["image/svg+xml"])
     assert text(outputs[5]["image/png"]).startswith("iVBORw0KGgo")  # the signature of PNG in base 64
@@ -110,6 +108,7 @@ def test_a_response_shows_as_a_drawing_and_a_long_one_as_a_raster(outputs):
 
 
 @pytest.mark.slow
+@needs_kernel
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_every_cell_of_a_notebook_of_the_documentation_shows_something(path, executed):
     rich = {"image/png", "image/svg+xml", "text/html", "text/latex"}

@@ -4,11 +4,9 @@
 """
 
 import functools
-import http.server
 import importlib.util
 import json
 import os
-import threading
 import time
 from decimal import Decimal
 
@@ -16,7 +14,7 @@ import pytest
 
 from symflex.cli import run
 from tests.house.repository import ROOT
-from tests.integration.chromium import Chromium
+from tests.integration.chromium import Chromium, serving
 
 RUNTIME = os.environ.get("SYMFLEX_WEBASSEMBLY")
 MORE = (
@@ -48,23 +46,11 @@ def hook():
     return module
 
 
-class Quiet(http.server.SimpleHTTPRequestHandler):
-    """Serves files, and says nothing."""
-
-    extensions_map = http.server.SimpleHTTPRequestHandler.extensions_map | {".mjs": "text/javascript"}
-
-    def log_message(self, *_):
-        pass
-
-
 @pytest.fixture(scope="module")
 def server(tmp_path_factory):
     folder = tmp_path_factory.mktemp("site")
     hook().lay_out(folder)
-    served = http.server.ThreadingHTTPServer(
-        ("127.0.0.1", 0), functools.partial(Quiet, directory=str(folder))
-    )
-    threading.Thread(target=served.serve_forever, daemon=True).start()
+    served = serving(folder)
     yield served
     served.shutdown()
     served.server_close()

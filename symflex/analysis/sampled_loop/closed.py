@@ -13,7 +13,7 @@ those outside the unit circle.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, partial
@@ -208,12 +208,12 @@ def located_in_w(
 
 def in_w(bound: BoundTransferFunction) -> BoundTransferFunction:
     """Return one over the characteristic function as a rational function of w, which its s stands for."""
-    return _rational(bound, _turned)
+    return _rational(bound, lambda w: (1 - w, 1 + w))
 
 
 def roots_in_b(tf: TransferFunction, values: Mapping[str, ExactValue | Fraction], digits: int) -> list[Root]:
     """Return the roots of the characteristic function in ``b = 1/z``, enclosed; errors as of polynomials."""
-    bound = _rational(bind(tf, values), _kept)
+    bound = _rational(bind(tf, values), lambda b: (b, 1))
     factors = [(f, -e) for f, e in bound.ratio.factors if e < 0]
     return [*find_polynomial_roots(problem_of(bound, factors), digits)]
 
@@ -230,38 +230,25 @@ def inside(roots: Sequence[Root], unseen: StabilityVerdict = NONE) -> StabilityV
 
 
 def _rational(
-    bound: BoundTransferFunction, moved: Callable[[Ring, Ring, fmpz_mpoly, int], fmpz_mpoly]
+    bound: BoundTransferFunction, sides: Callable[[fmpz_mpoly], tuple[fmpz_mpoly, fmpz_mpoly | int]]
 ) -> BoundTransferFunction:
-    """Return one over the characteristic function with another variable in place of s and its delay."""
+    """Return one over the characteristic function in a variable of which b is a quotient, by its sides."""
     ring = bound.ratio.ring
     (back,) = (ring.index[k.generator] for k in bound.kernels.kernels)
     small = Ring(tuple(n for i, n in enumerate(ring.names) if i != back))
+    above, below = sides(small.context.gen(0))
     # What a controller does not see is in what it closes the loop around.
     unseen = [(h.polynomial, h.multiplicity) for h in bound.hidden if h.polynomial.degrees()[back]]
     den = Factored.number(small, 1)
     for factor, exponent in (*bound.den.factors, *unseen):
         if exponent > 0 and factor != ring.context.gen(back):  # b = 0 is z at infinity
-            den = den * Factored.polynomial(small, moved(ring, small, factor, back)) ** exponent
+            # Of degree n in b it is below^n f(above/below).
+            parts = ring.coefficients(factor, back)
+            turned = small.constant(0)
+            for n, part in enumerate(parts):
+                turned += small.taken_over(part, ring.names) * above**n * below ** (len(parts) - 1 - n)
+            den = den * Factored.polynomial(small, turned) ** exponent
     return replace(bound, ratio=1 / den, hidden=(), kernels=NO_KERNELS, parts=None, is_of_model=False)
-
-
-def _kept(ring: Ring, small: Ring, factor: fmpz_mpoly, back: int) -> fmpz_mpoly:
-    """Return a polynomial in b as one in what s stands for."""
-    total = small.constant(0)
-    for power_of, part in enumerate(ring.coefficients(factor, back)):
-        total += small.taken_over(part, ring.names) * small.context.gen(0) ** power_of
-    return total
-
-
-def _turned(ring: Ring, small: Ring, factor: fmpz_mpoly, back: int) -> fmpz_mpoly:
-    """Return ``(1 + w)^n f((1 - w)/(1 + w))`` of a polynomial of degree n in b."""
-    parts = ring.coefficients(factor, back)
-    w = small.context.gen(0)
-    total = small.constant(0)
-    for power_of, part in enumerate(parts):
-        moved = small.taken_over(part, ring.names)
-        total += moved * (1 - w) ** power_of * (1 + w) ** (len(parts) - 1 - power_of)
-    return total
 
 
 def sampled_loop(model: Model, ranges: Mapping[str, Ends] | None = None) -> SampledLoop:
@@ -282,6 +269,7 @@ def sampled_loop(model: Model, ranges: Mapping[str, Ends] | None = None) -> Samp
     (channel,) = loop.channels
     _check_causal(model, channel, delay / period, symbolic)
     of_plant = [name for name in symbolic if any(names_among(e, {name}) for _, e in loop.model.expressions())]
+    of_times = [name for name in symbolic if any(names_among(e, {name}) for e in (loop.period, loop.delay))]
     machine = observed(with_numbers(loop.model, of_plant), channel.seen)
     (tf,) = derive_all(machine, [(channel.seen, channel.held)])
     if tf.ratio.is_zero:
@@ -290,7 +278,7 @@ def sampled_loop(model: Model, ranges: Mapping[str, Ends] | None = None) -> Samp
     bound = bind(tf.whole, {name: sum(symbolic[name]) / 2 for name in of_plant})
     delays = None if bound.is_rational else delayed_quotient(bound)
     if not bound.is_rational and (delays is None or len(delays.below) > 1):
-        _check_known(model, [*of_plant, *_of_times(loop, symbolic)])
+        _check_followed(model, tf.whole, [*of_plant, *of_times])
         known = distributed_pulse(bound, Sampling(period), delay)
         if isinstance(known, str):
             message = f"a sampled loop about beams, or about a delay in a continuous loop: {known}"
@@ -299,7 +287,6 @@ def sampled_loop(model: Model, ranges: Mapping[str, Ends] | None = None) -> Samp
         closed = _closed(model, channel, loop.period, pulse_of(known[0]), symbolic)
         return SampledLoop(model, loop, period, delay, closed, (bound,), least=known[1])
     timing = Timing(loop.period, loop.delay, numbers, symbolic)
-    of_times = _of_times(loop, symbolic)
     if of_plant or (of_times and bound.is_rational):
         _check_followed(model, tf.whole, of_plant)
         function = CharacteristicFunction.of(machine, tf.whole, list(dict.fromkeys((*of_plant, *of_times))))
@@ -313,19 +300,6 @@ def sampled_loop(model: Model, ranges: Mapping[str, Ends] | None = None) -> Samp
         pulse = pulse_of(pulse_function(bound, Sampling(period), delay))
     tf = _closed(model, channel, loop.period, pulse, symbolic)
     return SampledLoop(model, loop, period, delay, tf, (bound,))
-
-
-def _of_times(loop: OpenedLoop, names: Iterable[str]) -> list[str]:
-    """Return which parameters are of the period or the delay."""
-    return [name for name in names if any(names_among(e, {name}) for e in (loop.period, loop.delay))]
-
-
-def _check_known(model: Model, names: Iterable[str]) -> None:
-    """Refuse parameters of a continuous part with beams, and times beside one; SF801."""
-    for name in names:
-        span = next(p.span for p in model.parameters if p.name == name)
-        message = f"'{name}' is a parameter of a continuous part with beams or delays, or a time beside one"
-        raise ModelError(Diagnostic("SF801", message, span, EACH))
 
 
 def _time(model: Model, expression: Expression, numbers: Mapping[str, ExactValue]) -> Fraction:
@@ -381,11 +355,13 @@ def _check_symbol(model: Model, loop: OpenedLoop, name: str) -> None:
 
 
 def _check_followed(model: Model, tf: TransferFunction, names: Sequence[str]) -> None:
-    """Refuse parameters of a continuous part with delays, and those that move modes it hides; SF801."""
+    """Refuse parameters beside beams and delays, and those that move modes a continuous part hides; SF801."""
     for name in names:
         span = next(p.span for p in model.parameters if p.name == name)
         if tf.kernels:
-            message = f"'{name}' is a parameter of a continuous part with delays"
+            message = (
+                f"'{name}' is a parameter of a continuous part with beams or delays, or a time beside one"
+            )
             raise ModelError(Diagnostic("SF801", message, span, EACH))
         place = tf.ratio.ring.index.get(name)
         if place is not None and any(h.polynomial.degrees()[place] for h in tf.hidden):

@@ -86,7 +86,6 @@ def _coefficients(total: PartialSum, sampling: Sampling, ahead: Fraction) -> tup
     jumps = [y - before for y, before in zip(steps, [arb(0), *steps], strict=False)]
     product = whole * arb_poly(jumps)
     above = [product[j] for j in range(count)]
-    above[0] = arb(0) if jumps[0] == 0 else above[0]
     kept = 1 + max(
         (j for j, a in enumerate(above) if a.rel_accuracy_bits() > SHARP and not a.contains(0)), default=0
     )
@@ -121,18 +120,13 @@ def _below(slow: Sequence[ExponentialTerm], period: arb) -> tuple[list[arb], int
 
 
 def _steps(total: PartialSum, sampling: Sampling, ahead: Fraction, count: int) -> list[arb]:
-    """Return the step response at so many samples."""
+    """Return the step response at so many samples: what is known of the first, and what fades after them."""
+    known = total.sampled.values
     times = _times(sampling, ahead, count)
-    steps = values_of(total.terms, times)
     seconds = times.enclosed()
-    last = len(total.values) - 1
-    rests = total.at_times or (total.rest,) * len(total.values)
-    for k, t in enumerate(seconds):
-        rest = rests[k] if k <= last else rests[last] * (-total.fade * (t - seconds[last])).exp()
-        steps[k] += arb(0, rest.upper())
-    if not ahead:
-        steps[0] = total.values[0] + arb(0, rests[0].upper()) if rests[0] > 0 else total.values[0]
-    return steps
+    rest, since = (total.at_times or (total.rest,))[-1], seconds[len(known) - 1]
+    later = zip(values_of(total.terms, times, len(known)), seconds[len(known) :], strict=True)
+    return [*known, *(y + arb(0, (rest * (total.fade * (since - t)).exp()).upper()) for y, t in later)]
 
 
 def _cubic(above: Sequence[arb], kept: int, first: int, size: arb, falls: arb, reach: arb) -> list[arb]:

@@ -89,6 +89,12 @@ class SampledPoles(Printed):
         return sum(pole.multiplicity * (1 + pole.is_pair) for pole in self.poles)
 
     @property
+    def counted(self) -> str:
+        """How many poles there are, and from where on they are counted, in words."""
+        far = "" if self.least is None else f" with abs(z) above {float(self.least):.3g}"
+        return f"{self.count} poles in z{far}"
+
+    @property
     def certified(self) -> bool:
         """Whether the verdict is proved."""
         return self.verdict.certified
@@ -101,8 +107,7 @@ class SampledPoles(Printed):
     def passages(self) -> Iterator[Passage]:
         """Return the verdict and the poles."""
         status = "certified" if self.certified else "NOT CERTIFIED"
-        far = "" if self.least is None else f" with abs(z) above {float(self.least):.3g}"
-        lines = [f"sampled loop   {status}: {self.count} poles in z{far}", f"{INDENT}{self.sampled}"]
+        lines = [f"sampled loop   {status}: {self.counted}", f"{INDENT}{self.sampled}"]
         yield Passage([*lines, f"{INDENT}{self.sentence}"])
         yield Passage([f"{INDENT}poles, s = ln(z)/T"], self._rows(self.poles))
         if self.hidden:

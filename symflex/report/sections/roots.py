@@ -97,7 +97,7 @@ def sampled_section(study: Study) -> ChapterPart | None:
     found = sampled_poles(study.model)
     badge = Badge("certified", "good") if found.certified else Badge("not certified", "bad")
     _, *tables = found.passages()
-    verdict = marked(badge, f"{found.count} poles in z: {found.sentence}")
+    verdict = marked(badge, f"{found.counted}: {found.sentence}")
     blocks = (verdict, text(f"{found.sampled}."), *as_printed(tables), text(SAMPLED))
     data = {f"data/{study.stem}_poles.json": json.dumps(found.to_json_dict(), indent=1).encode()}
     code = 0 if found.certified else UncertifiedError.exit_code

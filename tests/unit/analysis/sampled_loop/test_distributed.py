@@ -50,6 +50,7 @@ def test_every_pole_solves_the_equation_of_the_loop():
     found = sampled_poles(loads(TEXT))
     assert found.certified and found.verdict.word == "stable" and float(found.least) == 0.5
     assert found.count == 4
+    assert found.counted == "4 poles in z with abs(z) above 0.5"
     for pole in found.poles:
         z = complex(pole.z)
         assert abs(1 + 0.5 * pulse(z)) < 2e-5 * abs(z), z
